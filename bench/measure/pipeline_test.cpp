@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <regex>
+#include <sstream>
 
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/testing/test_shell.h"
@@ -25,6 +25,13 @@ Answered answered(const Strategy& strategy, const StrategyInput& setup,
   out.report = strategy.make(setup).detector->detect({interval.motion, &*interval.bones}, out.found);
   out.found.sort();
   return out;
+}
+
+bool has_line(const std::string& text, const std::string& begin, const std::string& end) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with(begin) && line.ends_with(end)) return true;
+  return false;
 }
 
 void expect_same_counters(const Report& a, const Report& b, const std::string& of) {
@@ -99,11 +106,9 @@ TEST_F(PipelineRun, IsNamedByRecordsTablesAndClaims) {
   EXPECT_NE(page.find("| small, published |"), std::string::npos) << page;
   EXPECT_NE(page.find("| small, today |"), std::string::npos) << page;
   for (const char* pipeline : {"published", "today"}) {
-    const std::regex line("\nbeside,small,base.refit,[^\n]*," + std::string(pipeline) + ",\n");
-    EXPECT_TRUE(std::regex_search(csv, line)) << csv;
+    EXPECT_TRUE(has_line(csv, "beside,small,base.refit,", "," + std::string(pipeline) + ",")) << csv;
   }
-  EXPECT_TRUE(std::regex_search(csv, std::regex("\nbeside,small,base.pctp,[^\n]*,both,\n")))
-      << "counters stand once";
+  EXPECT_TRUE(has_line(csv, "beside,small,base.pctp,", ",both,")) << "counters stand once";
 
   // A record without the field is an old one.
   nlohmann::json old = today;
