@@ -153,12 +153,13 @@ std::string scene_file_markdown() {
   std::string out =
       "# What a scene file holds\n\n" + std::string(kIntroduction) +
       "`cscd list scene-file --markdown` writes this page from the rows by which the program reads scene\n"
-      "files, and a test compares the two.\n";
+      "files, and a test compares the two. What else a new scene needs: [to "
+      "add](../bench/README.md#to-add).\n";
   std::vector<std::vector<std::string>> lines;
   for (const scenes::SceneField& field : scenes::scene_fields())
     lines.push_back({"`" + std::string(field.name) + "`", std::string(field.type),
                      field.required ? "yes" : "no", range(field), std::string(field.meaning)});
-  out += "\n" + word_table({"member", "type", "required", "range", "meaning"}, lines);
+  out += "\n" + word_table({"member", "type", "required, here or in `base`", "range", "meaning"}, lines);
   for_each_section([&](const std::string& kind, std::string_view name, std::string_view description,
                        const auto& parameters) {
     out += "\n## " + kind + " `" + std::string(name) + "`\n\n" + std::string(description) + "\n";

@@ -38,10 +38,10 @@ struct ShapedTable {
 // What stands above the line that begins_today().
 inline constexpr char kTodayNote[] = "the same with this project's code around every method (pipeline today)";
 
-// The paper's Tables 1, 2 and 3 of the scenes in the records: one line a scene, and beneath it the published
-// figures. A scene with a record of the pipeline `published` is shown in that one; other scenes stand below,
-// in the pipeline `today`. With `intervals`, the ends of the 95 % intervals stand in lines of their own. A
-// table in which no strategy was measured is left out.
+// The paper's Tables 1, 2 and 3 of the scenes in the records, and that of real steps: one line a scene, and
+// beneath it the published figures. A scene with a record of the pipeline `published` is shown in that one;
+// other scenes stand below, in the pipeline `today`. With `intervals`, the ends of the 95 % intervals stand
+// in lines of their own. A table in which no strategy was measured is left out.
 std::vector<ShapedTable> shaped_tables(std::span<const FilledTable> tables, std::span<const Record> records,
                                        bool intervals = false);
 

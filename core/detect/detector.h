@@ -35,8 +35,9 @@ class Detector {
  public:
   virtual ~Detector() = default;
   // Replaces the content of `out` by the contacts and undecided feature pairs of one interval, unsorted, and
-  // returns counters and times. A detector logs nothing; it throws only where a package that it calls fails
-  // or refuses the positions (baselines/embree, baselines/fcl).
+  // returns counters and times. A detector logs nothing. It throws InputError where it has no proof for the
+  // thickness of the step, and where a package that it calls fails or refuses the positions
+  // (baselines/embree, baselines/fcl).
   virtual Report detect(const Step& step, ContactSet& out) = 0;
   // Forgets all intervals: what follows is answered as by a new detector. Only the detectors of strategies
   // that follow the surface (StrategyKind::adaptive) have anything to forget.

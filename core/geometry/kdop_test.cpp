@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "core/geometry/exact_kdop.h"
+#include "core/geometry/test_exact_kdop.h"
 
 namespace cscd {
 namespace {

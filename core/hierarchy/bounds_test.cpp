@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "core/geometry/exact_kdop.h"
+#include "core/geometry/test_exact_kdop.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {

@@ -1,6 +1,6 @@
 #pragma once
 
-// For tests only: checks of 16-DOPs in rational arithmetic.
+// Checks of 16-DOPs in rational arithmetic.
 
 #include <array>
 #include <cmath>
