@@ -73,6 +73,13 @@ struct TallTube : test::Body {
   }
 };
 
+std::set<std::pair<TriangleId, TriangleId>> unsettled_pairs(TallRings& rings) {
+  std::set<std::pair<TriangleId, TriangleId>> out;
+  rings.find_unsettled();
+  rings.for_each_unsettled_pair([&](TriangleId a, TriangleId b) { out.emplace(std::minmax(a, b)); });
+  return out;
+}
+
 // "Theorem: tall rings", its condition.
 // Mutations: one ring settles instead of two; rings are spread once instead of twice, or not at all;
 // triangles outside the cluster count as inside.
@@ -81,9 +88,7 @@ TEST(TallRings, WhatIsSettledHasTallTrianglesAllRoundIt) {
   unsigned seed = 0;
   for (const double share : {0.0, 0.002, 0.01, 0.03}) {
     TallTube tube(++seed, share);
-    tube.rings.find_unsettled();
-    std::set<std::pair<TriangleId, TriangleId>> left;
-    tube.rings.for_each_unsettled_pair([&](TriangleId a, TriangleId b) { left.emplace(std::minmax(a, b)); });
+    const std::set<std::pair<TriangleId, TriangleId>> left = unsettled_pairs(tube.rings);
     unsettled += left.size();
     const NearTriangles near(tube.mesh);
     for (std::size_t t = 0; t < tube.mesh.triangle_count(); ++t) {
@@ -104,6 +109,24 @@ TEST(TallRings, WhatIsSettledHasTallTrianglesAllRoundIt) {
   }
   EXPECT_GT(settled, 3 * unsettled);
   EXPECT_GT(unsettled, 1000u);
+}
+
+// Mutation: rings that lie inside clusters stay those of the old clusters.
+TEST(TallRings, LieInsideTheClustersThatThereAreNow) {
+  TallTube tube(7, 0);
+  std::vector<Patch>& patches = tube.cut.tree.patches;
+  const auto all_tall = [&](TallRings& rings) {
+    rings.start(1);
+    for (std::size_t p = 0; p < patches.size(); ++p) rings.take(p, 0, patches[p].lanes);
+    return unsettled_pairs(rings);
+  };
+  const auto before = all_tall(tube.rings);
+  const auto added = static_cast<std::int32_t>(tube.cut.covers[0].observers.size());
+  for (std::size_t p = patches.size() / 2; p < patches.size(); ++p) patches[p].cluster[0] = added;
+  tube.rings.forget_clusters();
+  TallRings fresh(tube.mesh, tube.cut.tree);
+  EXPECT_EQ(all_tall(tube.rings), all_tall(fresh));
+  EXPECT_GT(all_tall(fresh).size(), before.size());
 }
 
 // Mutations: rings are not spread; what is spoiled later is left in.
