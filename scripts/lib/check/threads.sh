@@ -68,7 +68,7 @@ say "scenes"
 while read -r scene frames; do
   $build/cscd run --scene "$scene" --strategy drvbc_fast,drvbc_fast_all,drvbc_fast_complete,drvbc_fast_bones \
     --frames "$frames" --repetitions 1 --threads $threads --force --json "$build/$scene.json" |
-    grep ' ok, \|FAILED' | sed "s/^/$scene: /"
+    grep -E ' (ok|FAILED) ' | sed "s/^/$scene: /"
 done <<'TEXT'
 rope 60:62
 hand_contact 60:61
