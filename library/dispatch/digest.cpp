@@ -88,15 +88,23 @@ void ask_what_is_wrong(Digest& sum) {
   throw std::runtime_error("a wrong size is taken");
 }
 
+// The C library chooses other code for sine and cosine where a processor lacks FMA, and its last bits differ.
+// Every processor has to be asked about the same positions, so both are rounded to single precision.
+double cosine(double turns) {
+  return static_cast<float>(std::cos(2 * M_PI * turns));
+}
+double sine(double turns) {
+  return static_cast<float>(std::sin(2 * M_PI * turns));
+}
+
 // A closed ring of `around` by `along` quads, two triangles each, which bends to an eight as `phase` grows.
 Positions ring(int around, int along, double phase) {
   Positions out(around * along, 3);
   for (int i = 0; i < along; ++i)
     for (int j = 0; j < around; ++j) {
-      const double u = 2 * M_PI * i / along, v = 2 * M_PI * j / around;
-      const double r = 1 + 0.1 * std::cos(v) - 0.9 * phase * std::cos(u) * std::cos(u);
-      out.row(i * around + j) << r * std::cos(u), 2 * std::sin(u),
-          0.1 * std::sin(v) + 0.02 * phase * i / along;
+      const double u = double(i) / along, v = double(j) / around;
+      const double r = 1 + 0.1 * cosine(v) - 0.9 * phase * cosine(u) * cosine(u);
+      out.row(i * around + j) << r * cosine(u), 2 * sine(u), 0.1 * sine(v) + 0.02 * phase * i / along;
     }
   return out;
 }
