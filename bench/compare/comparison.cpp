@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "bench/compare/settings.h"
+
 namespace cscd::bench {
 
 namespace {
@@ -25,12 +27,11 @@ void compare_scene(const std::string& scene, const Records& before, const Record
   const auto append = [](auto& to, auto from) {
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
   };
+  const std::string settings = other_settings(one, other);
   if (one.scene.digest != other.scene.digest)
     out.refusals.push_back({scene, "digests of contacts", "other scenes: the frames differ"});
-  else if (one.elementary != other.elementary)
-    out.refusals.push_back(
-        {scene, "digests of contacts",
-         "other pipelines: the elementary tests are " + one.elementary + " and " + other.elementary});
+  else if (!settings.empty())
+    out.refusals.push_back({scene, "digests of contacts", "other settings: " + settings});
   out.compared_answers += compared_answers(one, other);
   append(out.truth, compare_truth(before, after));
   if (const std::string why = counters_refused(one, other); !why.empty()) {
@@ -38,14 +39,16 @@ void compare_scene(const std::string& scene, const Records& before, const Record
   } else {
     out.compared_counts += compared_counts(one, other);
     append(out.counters, compare_counters(one, other));
+    for (const std::string& row : rows_of_other_settings(one, other))
+      out.refusals.push_back({scene, "counters of some rows", row});
     append(out.footprint, compare_footprints(before, after));
   }
   if (out.lane != Lane::all) return;
   if (const std::string why = times_refused(before, after); !why.empty()) {
     out.refusals.push_back({scene, "times", why});
-    if (one.scene.digest == other.scene.digest) {
+    if (one.scene.digest == other.scene.digest && settings.empty()) {
       append(out.unjudged_times, unjudged_times(scene, before, after));
-    } else {  // of other frames, so nothing is to be read from how they differ
+    } else {  // of other frames or settings, so nothing is to be read from how they differ
       append(out.unjudged_times, unjudged_times(scene, before, {}));
       append(out.unjudged_times, unjudged_times(scene, {}, after));
     }

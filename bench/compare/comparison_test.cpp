@@ -209,7 +209,7 @@ TEST(Comparison, RefusesWhatCannotBeCompared) {
       reasons(after([](Record& r) { r.scene.digest = "other"; }, Lane::all)).find("counters: the scene"),
       std::string::npos);
   EXPECT_NE(
-      reasons(after([](Record& r) { r.elementary = "exact"; }, Lane::all)).find("times: other pipelines"),
+      reasons(after([](Record& r) { r.elementary = "exact"; }, Lane::all)).find("times: other settings"),
       std::string::npos);
   EXPECT_NE(reasons(after([](Record&) {}, Lane::all)).find("times: the smaller side has 1 process"),
             std::string::npos);
@@ -218,6 +218,84 @@ TEST(Comparison, RefusesWhatCannotBeCompared) {
             })).find("counters: instruction sets"),
             std::string::npos);
   EXPECT_EQ(exit_status(after([](Record& r) { r.scene.name = "foot"; }).verdict()), 2);
+}
+
+// A setting that changes what a run counts or answers, and how the reason names it.
+struct OtherSetting {
+  std::function<void(Record&)> change;
+  std::string reason;
+};
+
+OtherSetting option(const std::vector<std::string>& words, const std::string& reason) {
+  return {[words](Record& r) { r.command.insert(r.command.end(), words.begin(), words.end()); }, reason};
+}
+
+// The new record counts more and finds other contacts, as another question does. That is no fault of it.
+TEST(Comparison, ComparesBetweenEqualSettingsOnly) {
+  const OtherSetting settings[] = {
+      {[](Record& r) { r.elementary = "exact"; }, "--elementary is newton and exact"},
+      {[](Record& r) { r.thickness = 0.25; }, "--thickness is left out and 0.25"},
+      option({"--ignore-neighbours", "1"}, "--ignore-neighbours is left out and 1"),
+      option({"--ignore", "hand:arm", "--ignore", "arm:arm"}, "--ignore is left out and arm:arm hand:arm"),
+      option({"--exclude-rings=3"}, "--exclude-rings is left out and 3"),
+      option({"--flip-inward", "--seed", "1"}, "--flip-inward is left out and given"),
+      option({"--an-option-to-come", "x"}, "--an-option-to-come is left out and x"),
+  };
+  for (const OtherSetting& setting : settings) {
+    const Comparison other = after(
+        [&](Record& r) {
+          setting.change(r);
+          for (StrategyRecord& row : r.strategies) ++row.counts["bvot"][3];
+          r.strategies[0].digests[1] = "xx";
+          r.strategies[0].footprint.peak_bytes = 1 << 30;
+        },
+        Lane::all);
+    EXPECT_EQ(other.verdict(), ComparisonVerdict::not_comparable) << setting.reason;
+    EXPECT_TRUE(other.counters.empty() && other.truth.empty() && other.times.empty()) << setting.reason;
+    const std::string text = comparison_text(other);
+    EXPECT_NE(
+        text.find("\ntruth: not compared\ncounters: not compared\nmemory and instructions: not compared\n"),
+        std::string::npos)
+        << text;
+    for (const char* what : {"digests of contacts", "counters", "times"})
+      EXPECT_NE(text.find(std::string(what) + " not compared: other settings: " + setting.reason),
+                std::string::npos)
+          << text;
+    // What is nevertheless wrong by its own record is still said.
+    const Comparison failed = after([&](Record& r) {
+      setting.change(r);
+      r.verification.strategies[0].failures = {"missing contact"};
+    });
+    EXPECT_EQ(failed.verdict(), ComparisonVerdict::less_true) << setting.reason;
+  }
+}
+
+TEST(Comparison, IsNotHinderedByOptionsThatChangeNoCounter) {
+  const Comparison same = after([](Record& r) {
+    r.command = {"cscd", "run", "--scene", "hand", "--threads", "2", "--repetitions=9", "--json", "new.json"};
+    ++r.strategies[1].counts["bvot"][3];
+  });
+  EXPECT_TRUE(same.refusals.empty()) << comparison_text(same);
+  EXPECT_EQ(same.counters.size(), 1u);
+}
+
+// The counters of a row that follows the surface depend on the intervals that were played to it before.
+TEST(Comparison, LeavesOutTheCountersOfARowWithAnotherLead) {
+  const Comparison led = after([](Record& r) {
+    r.strategies[1].lead = 24;
+    for (StrategyRecord& row : r.strategies) ++row.counts["bvot"][3];
+  });
+  ASSERT_EQ(led.counters.size(), 2u) << comparison_text(led);
+  for (const CounterFinding& finding : led.counters) EXPECT_NE(finding.row, "swift");
+  EXPECT_NE(comparison_text(led).find("swift was led up to each interval by 0 and 24 intervals"),
+            std::string::npos)
+      << comparison_text(led);
+}
+
+TEST(Comparison, RefusesRecordsOfTwoSettingsOnOneSide) {
+  std::vector<Record> records = {small_record(), small_record()};
+  records[1].elementary = "exact";
+  EXPECT_THROW(side_of(std::move(records), "OLD"), InputError);
 }
 
 TEST(Comparison, RefusesRecordsOfTwoCommitsOnOneSide) {

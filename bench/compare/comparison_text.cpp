@@ -78,7 +78,7 @@ std::string counters_line(const Comparison& c) {
 }
 
 std::string footprint_line(const Comparison& c) {
-  return c.scenes.empty() ? "not compared" : tally(c.footprint);
+  return c.compared_counts == 0 && c.footprint.empty() ? "not compared" : tally(c.footprint);
 }
 
 // "a, b, c and 9 more".
@@ -325,7 +325,7 @@ std::string unjudged_text(const Comparison& c, bool all, std::size_t most) {
   const std::vector<RowTimes> by_row = unjudged_by_row(c);
   const Rows means = unjudged_means(by_row);
   if (means.empty())
-    return title + ", of other scenes on either side" + cut_text(by_row.size(), most) + "\n" +
+    return title + ", of other scenes or settings on either side" + cut_text(by_row.size(), most) + "\n" +
            plain_table(kUnsharedHead, unshared_means(by_row), most);
   return title + cut_text(means.size(), most) + "\n" + plain_table(kUnjudgedMeanHead, means, most);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "bench/compare/settings.h"
 #include "core/base/error.h"
 #include "scenes/base/files_in.h"
 
@@ -71,7 +72,12 @@ Side side_of(std::vector<Record> records, const std::string& named) {
     // The pipelines answer the same and take different times, so their records are no repetitions.
     const std::string name =
         record.scene.name + (record.pipeline == Pipeline::published ? " (pipeline published)" : "");
-    side.scenes[name].push_back(std::move(record));
+    std::vector<Record>& processes = side.scenes[name];
+    if (!processes.empty())
+      if (const std::string settings = other_settings(processes.front(), record); !settings.empty())
+        throw InputError(named + ": holds two records of " + record.scene.name + " with other settings (" +
+                         settings + "), which are no repetitions of one measurement; name those of one");
+    processes.push_back(std::move(record));
   }
   return side;
 }

@@ -23,7 +23,8 @@ struct Side {
 
 // Reads what the user named: a record, a folder of records, or several of both with commas between. In a
 // folder, other JSON files are passed over. A file of Google Benchmark counts as a record without truth.
-// Throws InputError where nothing is there to read, and where the records are of several commits.
+// Throws InputError where nothing is there to read, where the records are of several commits, and where two
+// records of a scene have other settings.
 Side read_side(const std::string& named);
 
 // The same of records that are there.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "bench/cli/output/data.h"
+#include "bench/compare/settings.h"
 #include "bench/compare/side.h"
 #include "bench/compare/statistics.h"
 #include "bench/measure/record/shortfall.h"
@@ -185,13 +186,14 @@ std::string other_machine(const Record& one, const Record& other) {
   return "";
 }
 
-std::string other_pipeline(const Record& one, const Record& other) {
-  if (one.elementary != other.elementary)
-    return "other pipelines: the elementary tests are " + one.elementary + " and " + other.elementary;
+// What differs between how two records were measured; empty where nothing does.
+std::string other_measurement(const Record& one, const Record& other) {
+  if (const std::string settings = other_settings(one, other); !settings.empty())
+    return "other settings: " + settings;
   for (const StrategyRecord& row : one.strategies) {
     const StrategyRecord* same = other.strategy(row.name);
     if (same != nullptr && same->threads != row.threads)
-      return "other pipelines: " + row.name + " ran on " + std::to_string(row.threads) + " and " +
+      return "other threads: " + row.name + " ran on " + std::to_string(row.threads) + " and " +
              std::to_string(same->threads) + " threads";
   }
   if (environment_text(one, "build_type") != environment_text(other, "build_type"))
@@ -251,7 +253,7 @@ std::string times_refused(std::span<const Record> before, std::span<const Record
   for (const std::span<const Record> side : {before, after})
     for (const Record& record : side) {
       if (const std::string why = other_machine(before.front(), record); !why.empty()) return why;
-      if (const std::string why = other_pipeline(before.front(), record); !why.empty()) return why;
+      if (const std::string why = other_measurement(before.front(), record); !why.empty()) return why;
     }
   if (shared_timed(before, after).empty()) return "no interval was timed in all records";
   const std::size_t least = plan().at("least_processes"), have = std::min(before.size(), after.size());

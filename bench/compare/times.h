@@ -73,7 +73,7 @@ std::vector<TimeFinding> compare_times(std::span<const Record> before, std::span
 // How many rows and stages of a scene can be compared.
 std::size_t count_times(std::span<const Record> before, std::span<const Record> after);
 
-// Why times of two sides cannot be compared: no times, other machines, another pipeline, too few processes,
+// Why times of two sides cannot be compared: no times, other machines, other settings, too few processes,
 // not measured in turns. Empty where they can.
 std::string times_refused(std::span<const Record> before, std::span<const Record> after);
 

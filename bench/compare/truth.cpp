@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "bench/compare/settings.h"
 #include "bench/compare/side.h"
 #include "bench/measure/record/shortfall.h"
 #include "core/base/number_text.h"
@@ -56,11 +57,20 @@ void compare_verification(const Record& before, const Record& after, Findings& o
     out.push_back({scene, "", "NEW verified no interval", true});
 }
 
+// Whether both records verified the same intervals of the same frames, with equal settings. The timed
+// elementary test is no setting of the verification, which has a test of its own.
+bool verify_the_same(const Record& before, const Record& after) {
+  Settings old_settings = settings_of(before), new_settings = settings_of(after);
+  for (Settings* settings : {&old_settings, &new_settings}) settings->erase("--elementary");
+  return before.verification.intervals == after.verification.intervals &&
+         before.scene.digest == after.scene.digest && old_settings == new_settings;
+}
+
 // The counts of verification are over all verified intervals, so they say something only where these are the
 // same and the timed test is the same.
 void compare_accuracy(const Record& before, const Record& after, Findings& out) {
   const VerificationRecord &old_v = before.verification, &new_v = after.verification;
-  if (old_v.intervals != new_v.intervals || before.scene.digest != after.scene.digest) return;
+  if (!verify_the_same(before, after)) return;
   const std::string& scene = after.scene.name;
   if (before.elementary == after.elementary && old_v.reference == new_v.reference) {
     const auto compare = [&](const char* what, double old_value, double new_value) {
@@ -141,7 +151,7 @@ void compare_from_embedded(const Record& before, const StrategyRecord& old_row, 
 // Calls `each` with the two rows of every name that both records have answers of, to the same questions.
 template <class Each>
 void for_each_answering_row(const Record& before, const Record& after, const Each& each) {
-  if (before.scene.digest != after.scene.digest || before.elementary != after.elementary) return;
+  if (before.scene.digest != after.scene.digest || !other_settings(before, after).empty()) return;
   for (const StrategyRecord& new_row : after.strategies) {
     const StrategyRecord* old_row = before.strategy(new_row.name);
     if (old_row != nullptr && !old_row->digests.empty() && !new_row.digests.empty()) each(*old_row, new_row);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "bench/cli/output/data.h"
+#include "bench/compare/settings.h"
 #include "bench/compare/side.h"
 #include "bench/compare/statistics.h"
 
@@ -23,7 +24,7 @@ template <class Each>
 void for_each_counter(const Record& before, const Record& after, const Each& each) {
   for (const StrategyRecord& new_row : after.strategies) {
     const StrategyRecord* old_row = before.strategy(new_row.name);
-    if (old_row == nullptr) continue;
+    if (old_row == nullptr || !other_row_settings(*old_row, new_row).empty()) continue;
     for (const auto& [counter, new_column] : new_row.counts)
       if (const auto old_column = old_row->counts.find(counter);
           old_column != old_row->counts.end() && !is_answer(counter))
@@ -72,11 +73,21 @@ std::string_view to_string(Change change) {
 
 std::string counters_refused(const Record& before, const Record& after) {
   if (before.scene.digest != after.scene.digest) return "the scene moves differently";
+  if (const std::string settings = other_settings(before, after); !settings.empty())
+    return "other settings: " + settings;
   if (has_fma(before) != has_fma(after))
     return "instruction sets with and without fused multiply-add round differently (" +
            environment_text(before, "instruction_set") + ", " + environment_text(after, "instruction_set") +
            ")";
   return "";
+}
+
+std::vector<std::string> rows_of_other_settings(const Record& before, const Record& after) {
+  std::vector<std::string> out;
+  for (const StrategyRecord& row : after.strategies)
+    if (const StrategyRecord* same = before.strategy(row.name))
+      if (std::string why = other_row_settings(*same, row); !why.empty()) out.push_back(std::move(why));
+  return out;
 }
 
 std::size_t compared_counts(const Record& before, const Record& after) {

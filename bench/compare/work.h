@@ -25,13 +25,19 @@ struct FootprintFinding {
 };
 
 // Returns the counters that differ on any interval that both records counted. More of a cost
-// (comparison.json) is worse, less of it better; other counters are merely different.
+// (comparison.json) is worse, less of it better; other counters are merely different. Leaves out rows with
+// other settings of their own (rows_of_other_settings).
 std::vector<CounterFinding> compare_counters(const Record& before, const Record& after);
 
 // How many counters of how many intervals were compared to find these.
 std::size_t compared_counts(const Record& before, const Record& after);
 
-// Why the counters of two records cannot be compared; empty where they can.
+// Names the rows whose counters are not compared because the row itself was measured with other settings, and
+// says in which.
+std::vector<std::string> rows_of_other_settings(const Record& before, const Record& after);
+
+// Why the counters of two records cannot be compared; empty where they can. Counters are compared between
+// equal settings only (bench/compare/settings.h), since a setting changes them by intent.
 std::string counters_refused(const Record& before, const Record& after);
 
 // Returns the footprints that differ by more than the floors of comparison.json.

@@ -1,0 +1,83 @@
+#include "bench/compare/settings.h"
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+
+#include "core/base/number_text.h"
+
+namespace cscd::bench {
+namespace {
+
+// Options of `cscd run` that choose an input, rows, intervals, repetitions, threads or a place for the
+// result. None of them changes an answer or a counter of an interval that both records have. --clip and
+// --frames choose frames, and the digest of the frames says whether these are the same. Limits on time and
+// memory change no answer either.
+constexpr std::string_view kNoSettings[] = {
+    "--scene",       "--input",          "--strategy",      "--frames", "--repetitions",   "--count-every",
+    "--time-every",  "--time-contacts",  "--verify-every",  "--seed",   "--smoke",         "--threads",
+    "--json",        "--force",          "--counts",        "--cells",  "--worker",        "--clip",
+    "--clip-number", "--cell-intervals", "--import-memory", "--memory", "--import-seconds"};
+
+// Members of a record say these better than its command line, which older records do not spell out.
+constexpr std::string_view kElementary = "--elementary", kPipeline = "--pipeline", kThickness = "--thickness";
+
+bool is_option(const std::string& word) {
+  return word.size() > 2 && word.starts_with("--");
+}
+
+// The options of a command line that are settings. An option that is given several times, as --ignore, has
+// all its values in order, so that the order in which they were given makes no difference.
+Settings from_command(const std::vector<std::string>& words) {
+  std::map<std::string, std::multiset<std::string>> given;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (!is_option(words[i])) continue;
+    const std::size_t equals = words[i].find('=');
+    const std::string option = words[i].substr(0, equals);
+    if (std::ranges::find(kNoSettings, option) != std::end(kNoSettings)) continue;
+    const bool has_value = equals != std::string::npos || (i + 1 < words.size() && !is_option(words[i + 1]));
+    given[option].insert(!has_value                    ? "given"
+                         : equals != std::string::npos ? words[i].substr(equals + 1)
+                                                       : words[i + 1]);
+  }
+  Settings out;
+  for (const auto& [option, values] : given)
+    for (const std::string& value : values) out[option] += (out[option].empty() ? "" : " ") + value;
+  return out;
+}
+
+}  // namespace
+
+Settings settings_of(const Record& record) {
+  Settings out = from_command(record.command);
+  out[std::string(kElementary)] = record.elementary;
+  out[std::string(kPipeline)] = to_string(record.pipeline);
+  out.erase(std::string(kThickness));
+  if (record.thickness > 0) out[std::string(kThickness)] = exact_text(record.thickness);
+  return out;
+}
+
+std::string other_settings(const Record& one, const Record& other) {
+  const Settings first = settings_of(one), second = settings_of(other);
+  std::set<std::string> names;
+  for (const Settings* side : {&first, &second})
+    for (const auto& [name, value] : *side) names.insert(name);
+  const auto value_in = [](const Settings& settings, const std::string& name) {
+    const auto found = settings.find(name);
+    return found == settings.end() ? std::string("left out") : found->second;
+  };
+  std::string out;
+  for (const std::string& name : names)
+    if (value_in(first, name) != value_in(second, name))
+      out += (out.empty() ? "" : "; ") + name + " is " + value_in(first, name) + " and " +
+             value_in(second, name);
+  return out;
+}
+
+std::string other_row_settings(const StrategyRecord& one, const StrategyRecord& other) {
+  if (one.lead == other.lead) return "";
+  return one.name + " was led up to each interval by " + std::to_string(one.lead) + " and " +
+         std::to_string(other.lead) + " intervals";
+}
+
+}  // namespace cscd::bench
