@@ -56,6 +56,8 @@ TEST_F(CompareCommand, RefusesWhatIsNoRecord) {
   expect_refused(run("cscd compare old.json none.json"), "none.json: cannot be read");
   expect_refused(run("echo {} > empty.json; cscd compare old.json empty.json"), "empty.json");
   expect_refused(run("mkdir f; cscd compare f old.json"), "holds no record");
+  expect_refused(run("echo text > text.md; cscd compare old.json text.md"),
+                 "record text.md: is no JSON and so no record");
 }
 
 TEST_F(CompareCommand, ReadsFilesOfGoogleBenchmark) {
@@ -75,7 +77,10 @@ TEST_F(CompareCommand, KeepsAHistoryThatIsNeverRewritten) {
   EXPECT_EQ(kept.status, 0) << kept.errors;
   expect_refused(run(keep), "never rewritten");
   expect_refused(run("cscd history h --keep clean.json"), "needs the commit's date");
-  const Ran shown = run("cscd history h --row base --json courses.json");
+  expect_refused(run("cscd history h --keep clean.json --committed ../../x"), "is not what git prints");
+  expect_refused(run("cscd history h --keep clean.json --committed yesterday"), "is not what git prints");
+  EXPECT_NE(run("cscd history h").out.find("of a single commit; --all"), std::string::npos);
+  const Ran shown = run("cscd history h --row base --all --json courses.json");
   EXPECT_EQ(shown.status, 0) << shown.errors;
   EXPECT_NE(shown.out.find("small, base, total"), std::string::npos) << shown.out;
   EXPECT_EQ(ordered_json::parse(text("courses.json")).at("courses").size(), 1u);

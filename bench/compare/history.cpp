@@ -1,10 +1,12 @@
 #include "bench/compare/history.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <span>
+#include <string_view>
 
 #include "bench/cli/output/data.h"
 #include "bench/cli/output/schema.h"
@@ -78,7 +80,12 @@ std::string slug(const std::string& text) {
 
 std::string machine_of(const ordered_json& entry) {
   const ordered_json& environment = entry.at("environment");
-  return slug(environment_text(environment, "cpu")) + "-" + environment_text(environment, "cores") + "core";
+  return slug(environment_text(environment, "cpu") + "-" + environment_text(environment, "cores")) + "core";
+}
+
+bool is_commit(const std::string& text) {
+  return text.size() >= 7 && text.size() <= 64 &&
+         text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
 ordered_json read_entry(const fs::path& path) {
@@ -89,6 +96,11 @@ ordered_json read_entry(const fs::path& path) {
                      "; remove it, or write it anew with `cscd history --keep`");
   if (const std::string violation = schema_violation(entry, "history.schema.json"); !violation.empty())
     throw InputError("history " + path.string() + ": does not follow its schema at " + violation);
+  try {
+    commit_second(entry.at("committed"));
+  } catch (const InputError& error) {
+    throw InputError("history " + path.string() + ": " + error.what());
+  }
   return entry;
 }
 
@@ -164,11 +176,43 @@ std::string point_text(const Course& course, std::size_t i) {
 
 }  // namespace
 
+std::int64_t commit_second(const std::string& committed) {
+  constexpr std::string_view kForm = "dddd-dd-ddTdd:dd:ddsdd:dd";  // d is a digit, s a sign
+  const auto fits = [&](std::size_t i) {
+    const char c = committed[i];
+    if (kForm[i] == 'd') return c >= '0' && c <= '9';
+    return kForm[i] == 's' ? c == '+' || c == '-' : c == kForm[i];
+  };
+  bool has_form = committed.size() == kForm.size();
+  for (std::size_t i = 0; has_form && i < kForm.size(); ++i) has_form = fits(i);
+  if (has_form) {
+    const auto number = [&](std::size_t at, std::size_t digits) {
+      return std::stoi(committed.substr(at, digits));
+    };
+    const std::chrono::year_month_day day{std::chrono::year(number(0, 4)),
+                                          std::chrono::month(static_cast<unsigned>(number(5, 2))),
+                                          std::chrono::day(static_cast<unsigned>(number(8, 2)))};
+    const int hour = number(11, 2), minute = number(14, 2), second = number(17, 2);
+    const int zone = 60 * number(20, 2) + number(23, 2);  // minutes ahead of UTC, without its sign
+    if (day.ok() && hour < 24 && minute < 60 && second <= 60 && number(23, 2) < 60 && zone < 24 * 60) {
+      const std::int64_t days = std::chrono::sys_days(day).time_since_epoch().count();
+      const std::int64_t local = ((days * 24 + hour) * 60 + minute) * 60 + second;
+      return local - (committed[19] == '-' ? -60 : 60) * zone;
+    }
+  }
+  throw InputError("the commit's date " + committed +
+                   " is not what git prints; take \"$(git show -s --format=%cI COMMIT)\"");
+}
+
 ordered_json history_entry(const Side& side, const std::string& committed) {
+  commit_second(committed);
   if (side.dirty || side.commit == "unknown")
     throw InputError(
         "history: the records are of no commit, as the sources differed from it; commit them and "
         "measure again");
+  if (!is_commit(side.commit))
+    throw InputError("history: the records name the commit " + side.commit +
+                     ", which is no name that git gives; measure again with a program that cscd built");
   ordered_json scenes = ordered_json::array(), environment = ordered_json::object();
   for (const char* key : kEnvironment)
     if (const ordered_json& all = side.scenes.begin()->second.front().environment; all.contains(key))
@@ -206,8 +250,8 @@ std::vector<Course> read_courses(const fs::path& folder, const CourseChoice& cho
   if (entries.empty())
     throw InputError("history " + folder.string() +
                      ": holds no entry; add one with scripts/compare-commits --keep or cscd history --keep");
-  std::ranges::stable_sort(entries, [](const ordered_json& a, const ordered_json& b) {
-    return a.at("committed").get<std::string>() < b.at("committed").get<std::string>();
+  std::ranges::stable_sort(entries, {}, [](const ordered_json& entry) {
+    return commit_second(entry.at("committed"));  // texts of two time zones do not sort as their dates do
   });
   std::vector<Course> courses;
   for (const ordered_json& entry : entries) add_entry(entry, choice, courses);
@@ -238,9 +282,14 @@ ordered_json courses_json(const std::vector<Course>& courses) {
   return {{"schema", "cscd.courses/1"}, {"courses", std::move(out)}};
 }
 
-std::string courses_text(const std::vector<Course>& courses, bool every_point) {
+std::string courses_text(const std::vector<Course>& courses, bool every_point, bool with_single_commits) {
   std::string out;
+  std::size_t single = 0;
   for (const Course& course : courses) {
+    if (course.ms.size() < 2 && !with_single_commits) {
+      ++single;
+      continue;
+    }
     out += course.scene + ", " + course.row + ", " + course.stage + " on " + course.machine + ", " +
            std::to_string(course.measured.at("timed_intervals").size()) + " intervals, " +
            std::to_string(course.measured.at("rows").size()) +
@@ -252,6 +301,7 @@ std::string courses_text(const std::vector<Course>& courses, bool every_point) {
       if (every_point || is_change) out += point_text(course, i);
     }
   }
+  if (single > 0) out += "left out: " + many(single, "course") + " of a single commit; --all shows them\n";
   return out;
 }
 

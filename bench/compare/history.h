@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,8 +15,14 @@ namespace cscd::bench {
 
 inline constexpr std::string_view kHistorySchema = "cscd.history/1";
 
+// Seconds from the beginning of 1970 (UTC) to a commit's date as git prints it with %cI, such as
+// 2026-11-25T12:00:00+01:00. Throws InputError for any other text, and for a day or an hour that does not
+// exist.
+std::int64_t commit_second(const std::string& committed);
+
 // Summarises the records of one commit: digests, counters, medians with intervals, environment. `committed`
-// is the commit's date as git prints it (%cI).
+// is the commit's date as git prints it (%cI). Throws InputError for records of no commit, and for a date of
+// any other form: both become parts of a file's name.
 nlohmann::ordered_json history_entry(const Side& side, const std::string& committed);
 
 // Where an entry belongs: FOLDER/MACHINE/DATE-COMMIT.json.
@@ -42,6 +49,8 @@ struct CourseChoice {
 std::vector<Course> read_courses(const std::filesystem::path& folder, const CourseChoice& choice);
 
 nlohmann::ordered_json courses_json(const std::vector<Course>& courses);
-std::string courses_text(const std::vector<Course>& courses, bool every_point);
+// For a terminal. A course of a single commit shows no change, so it is left out and counted in the last
+// line, unless `with_single_commits` asks for it.
+std::string courses_text(const std::vector<Course>& courses, bool every_point, bool with_single_commits);
 
 }  // namespace cscd::bench

@@ -14,7 +14,7 @@ namespace {
 struct HistoryOptions {
   std::string folder = "results/history", records, committed, json;
   CourseChoice choice{"", "", "", "total"};
-  bool force = false;
+  bool all = false, force = false;
 };
 
 void keep_entry(const HistoryOptions& options) {
@@ -38,7 +38,7 @@ void history(const HistoryOptions& options) {
     throw InputError("no entry of " + options.folder + " has such a row; see cscd history");
   if (!options.json.empty()) OutputFile(options.json, options.force).commit(json_text(courses_json(courses)));
   const bool chosen = !options.choice.row.empty() || !options.choice.scene.empty();
-  std::fputs(courses_text(courses, chosen).c_str(), stdout);
+  std::fputs(courses_text(courses, chosen, options.all).c_str(), stdout);
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ void add_history(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "history",
       "Show what each row took, commit by commit, and where its level changed.\n\n"
-      "  cscd history                                        the changes of every row\n"
+      "  cscd history                                        the changes of every row of several commits\n"
       "  cscd history --scene hand --row drvbc_fast          every commit of this row\n"
       "  cscd history --keep FOLDER --committed DATE         add an entry of the records in FOLDER\n\n"
       "An entry is one small JSON file a commit and kind of machine, and is never rewritten. Changes of "
@@ -60,9 +60,11 @@ void add_history(CLI::App& app) {
   command->add_option("--scene", options->choice.scene, "of this scene alone");
   command->add_option("--row", options->choice.row, "of this row alone");
   command->add_option("--stage", options->choice.stage, "of this stage")->capture_default_str();
+  command->add_flag("--all", options->all, "show courses of a single commit too");
   command->add_option("--keep", options->records,
                       "add an entry of these records: files or folders, commas between");
-  command->add_option("--committed", options->committed, "the date of the commit, as git prints it with %cI");
+  command->add_option("--committed", options->committed,
+                      "the date of the commit, as git prints it with %cI; nothing else is taken");
   command->add_option("--json", options->json, "where the courses go as JSON; - is standard output");
   command->add_flag("--force", options->force, "replace that file if it exists");
   command->callback([options] { history(*options); });

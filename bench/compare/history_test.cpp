@@ -43,10 +43,48 @@ TEST(History, KeepsWhatACommitTook) {
 TEST(History, RefusesRecordsOfNoCommit) {
   Record dirty = test::small_record();
   dirty.environment["dirty"] = true;
-  EXPECT_THROW(history_entry(side_of({dirty}, "a test"), "2026-11-25"), InputError);
+  EXPECT_THROW(history_entry(side_of({dirty}, "a test"), "2026-11-25T10:00:00+00:00"), InputError);
   Record failed = test::small_record();
   failed.verification.strategies[0].failures = {"missing contact"};
-  EXPECT_THROW(history_entry(side_of({failed}, "a test"), "2026-11-25"), InputError);
+  EXPECT_THROW(history_entry(side_of({failed}, "a test"), "2026-11-25T10:00:00+00:00"), InputError);
+}
+
+// Both become parts of a file's name, and an entry that cannot be read would stand in the way of all others.
+TEST(History, TakesNoDateAndNoCommitThatGitDoesNotName) {
+  for (const char* date :
+       {"", "yesterday", "../../x", "2026-11-25", "2026-11-25T10:00:00Z", "2026-11-25T10:00:00",
+        "2026-11-31T10:00:00+00:00", "2026-13-01T10:00:00+00:00", "2026-11-25T24:00:00+00:00",
+        "2026-11-25T10:60:00+00:00", "2026-11-25 10:00:00 +0000", "2026-11-25T10:00:00+24:00",
+        "2026-11-25T10:00:00+00:00/../../../x", "../../../../T10:00:00+00:00"})
+    EXPECT_THROW(entry_of("aaaaaaaaaaaaaaaa", date, 1), InputError) << date;
+  for (const char* commit : {"unknown", "../../../x", "HEAD", "aaaaaa", "AAAAAAAAAA"})
+    EXPECT_THROW(entry_of(commit, "2026-11-25T10:00:00+00:00", 1), InputError) << commit;
+  Record record = test::small_record();
+  record.environment["cores"] = "../../2";
+  const ordered_json entry = history_entry(side_of({record}, "a test"), "2026-11-25T10:00:00+00:00");
+  EXPECT_EQ(history_file("h", entry).parent_path(), fs::path("h/a-machine-2core"));
+}
+
+TEST(History, CountsFromTheZoneThatADateNames) {
+  EXPECT_EQ(commit_second("1970-01-02T00:00:00+00:00"), 24 * 3600);
+  EXPECT_EQ(commit_second("2024-02-29T12:00:00+02:30"), commit_second("2024-02-29T09:30:00+00:00"));
+  EXPECT_EQ(commit_second("2026-11-24T23:30:00-01:00"), commit_second("2026-11-25T00:30:00+00:00"));
+}
+
+// The entry of a program that took any text for a date.
+TEST(History, NamesTheEntryWhoseDateIsNone) {
+  const cscd::test::Folder scratch;
+  ordered_json entry = entry_of("aaaaaaaaaaaaaaaa", "2026-11-25T10:00:00+00:00", 1);
+  for (const char* date : {"yesterday", "2026-11-31T10:00:00+00:00"}) {
+    entry["committed"] = date;
+    std::ofstream(scratch.path / "bad.json") << json_text(entry);
+    try {
+      read_courses(scratch.path, {});
+      ADD_FAILURE() << date;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("bad.json"), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST(History, FindsTheCommitThatChangedARow) {
@@ -55,7 +93,7 @@ TEST(History, FindsTheCommitThatChangedARow) {
   fs::create_directories(folder / "m");
   EXPECT_THROW(read_courses(folder, {}), InputError);
   for (int i = 0; i < 8; ++i) {
-    const std::string commit = std::string(16, static_cast<char>('a' + i)),
+    const std::string commit = std::string(16, static_cast<char>('1' + i)),
                       day = "2026-11-1" + std::to_string(i);
     // Written in another order than committed, as later measurements of earlier commits are.
     std::ofstream(folder / "m" / (std::to_string(9 - i) + ".json"))
@@ -64,19 +102,23 @@ TEST(History, FindsTheCommitThatChangedARow) {
   const std::vector<Course> courses = read_courses(folder, {"", "hand", "slow", "traversal"});
   ASSERT_EQ(courses.size(), 1u);
   ASSERT_EQ(courses[0].changes.size(), 1u);
-  EXPECT_EQ(courses[0].commits[courses[0].changes[0].first], "ffffffffffffffff");
+  EXPECT_EQ(courses[0].commits[courses[0].changes[0].first], "6666666666666666");
   EXPECT_NEAR(courses[0].changes[0].ratio, 0.7, 1e-6);
-  EXPECT_NE(courses_text(courses, true).find("<- 1.43 times faster"), std::string::npos)
-      << courses_text(courses, true);
-  EXPECT_EQ(courses_json(courses)["courses"][0]["changes"][0]["commit"], "ffffffffffffffff");
+  EXPECT_NE(courses_text(courses, true, false).find("<- 1.43 times faster"), std::string::npos)
+      << courses_text(courses, true, false);
+  EXPECT_EQ(courses_json(courses)["courses"][0]["changes"][0]["commit"], "6666666666666666");
   // Times of other intervals, as a full record has, are no point of this course.
   std::ofstream(folder / "m" / "full.json")
-      << json_text(entry_of("iiiiiiiiiiiiiiii", "2026-11-18T10:00:00+00:00", 3, {1, 3}));
+      << json_text(entry_of("9999999999999999", "2026-11-18T10:00:00+00:00", 3, {1, 3}));
   const std::vector<Course> both = read_courses(folder, {"", "hand", "slow", "traversal"});
   ASSERT_EQ(both.size(), 2u);
   EXPECT_EQ(both[0].commits.size(), 8u);
   EXPECT_EQ(both[0].changes.size(), 1u);
   EXPECT_EQ(both[1].commits.size(), 1u);
+  const std::string some = courses_text(both, false, false);
+  EXPECT_EQ(some.find(": 1 commit,"), std::string::npos) << some;
+  EXPECT_NE(some.find("left out: 1 course of a single commit; --all shows them"), std::string::npos) << some;
+  EXPECT_NE(courses_text(both, false, true).find(": 1 commit, 0 changes"), std::string::npos);
   std::ofstream(folder / "m" / "other.json") << "{}";
   EXPECT_THROW(read_courses(folder, {}), InputError);
 }

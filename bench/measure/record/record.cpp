@@ -229,7 +229,8 @@ ordered_json to_json(const Record& record) {
 
 Record parse_record(const std::string& text, const std::string& where) {
   try {
-    const ordered_json document = ordered_json::parse(text);
+    const ordered_json document = ordered_json::parse(text, nullptr, false);
+    if (document.is_discarded()) throw InputError("is no JSON and so no record");
     if (const std::string schema = document.at("schema"); schema != kRunSchema)
       throw InputError("its schema is " + schema + ", not " + std::string(kRunSchema));
     if (const std::string violation = schema_violation(document, "run.schema.json"); !violation.empty())
