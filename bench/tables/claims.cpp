@@ -5,6 +5,7 @@
 #include "bench/cli/output/data.h"
 #include "bench/cli/output/markdown.h"
 #include "bench/tables/filled_tables.h"
+#include "bench/tables/run_times.h"
 #include "scenes/base/joined.h"
 
 namespace cscd::bench {
@@ -240,7 +241,24 @@ std::vector<ClaimResult> judge_claims(const ordered_json& claims, std::span<cons
 }
 
 std::vector<ClaimResult> judge_claims(std::span<const Record> records) {
-  return judge_claims(data_json("claims.json"), records);
+  std::vector<Record> whole;
+  std::string why;  // the first that any record gives
+  for (const Record& record : records) {
+    const std::string text = no_claims_text(record);
+    if (text.empty())
+      whole.push_back(record);
+    else if (why.empty())
+      why = text;
+  }
+  std::vector<ClaimResult> results = judge_claims(data_json("claims.json"), whole);
+  for (ClaimResult& claim : results)
+    if (!why.empty() && claim.evidence.empty()) claim.not_measured_because += " Left out: " + why + ".";
+  return results;
+}
+
+bool any_measured(std::span<const ClaimResult> claims) {
+  return std::ranges::any_of(
+      claims, [](const ClaimResult& claim) { return claim.verdict != ClaimVerdict::not_measured; });
 }
 
 ordered_json claims_json(std::span<const ClaimResult> claims) {

@@ -51,9 +51,14 @@ struct ClaimResult {
 // against `today`. A row of `stages` names the paper's figures for it (`published`: lists of factors, of
 // which the first that is complete counts) and the strategies that they are not of (`published_not_of`). A
 // definition with `over_pipeline` divides the figure of its `pipeline` by that of another.
+// A record from which nothing is to be claimed (no_claims_text) counts as none, and the claims that it would
+// be about say why.
 std::vector<ClaimResult> judge_claims(std::span<const Record> records);
 // The same with other claims.
 std::vector<ClaimResult> judge_claims(const nlohmann::ordered_json& claims, std::span<const Record> records);
+
+// Whether any claim could be held against a record at all.
+bool any_measured(std::span<const ClaimResult> claims);
 
 nlohmann::ordered_json claims_json(std::span<const ClaimResult> claims);
 std::string claims_markdown(std::span<const ClaimResult> claims);

@@ -222,7 +222,7 @@ void report(const ReportOptions& options) {
   shaped.push_back(times_of_strategies(records));
   std::string caution;  // the first that any record gives
   for (const Record& record : records)
-    if (caution.empty()) caution = too_few_text(record);
+    if (caution.empty()) caution = no_claims_text(record);
   const std::string text =
       report_with({{"schema", "cscd.report/1"},
                    {"base", ""},

@@ -39,6 +39,14 @@ std::string too_few_text(const Record& record) {
   return "";
 }
 
+std::string no_claims_text(const Record& record) {
+  const std::size_t whole = record.scene.frames > 0 ? record.scene.frames - 1 : record.intervals;
+  const std::string few = too_few_text(record);
+  if (record.intervals >= whole) return few;
+  return "the record of " + record.scene.name + " spans " + std::to_string(record.intervals) + " of " +
+         std::to_string(whole) + " intervals" + (few.empty() ? "" : ", and its " + few);
+}
+
 std::string run_times_text(const Record& record) {
   std::size_t width = 0;
   std::string rows;

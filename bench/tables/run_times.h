@@ -14,4 +14,9 @@ std::string run_times_text(const Record& record);
 // has. Empty where it has enough.
 std::string too_few_text(const Record& record);
 
+// Says why nothing is claimed of a scene from a record: it has too few repetitions, or spans a part of the
+// scene's intervals, as one of `run --smoke` does. Empty where something may be claimed. Claims of the paper
+// and the factors by which one method is faster than another are about whole scenes.
+std::string no_claims_text(const Record& record);
+
 }  // namespace cscd::bench

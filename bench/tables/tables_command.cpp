@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <deque>
 #include <filesystem>
+#include <optional>
 
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/output/json_text.h"
@@ -22,14 +23,11 @@ namespace fs = std::filesystem;
 struct TableOptions {
   std::vector<std::string> records;
   std::string folder;
-  bool intervals = false, force = false;
+  bool intervals = false, no_claims = false, force = false;
 };
 
-// The report that scripts/reproduce writes beside records, or how to write one.
-std::string page_of(const TableOptions& options, const fs::path& record) {
-  const fs::path page = record.parent_path() / "site" / "index.html";
-  std::error_code unknown;
-  if (fs::exists(page, unknown)) return page.string();
+// How a page of all figures of these records is written. A page that lies near them may be of other records.
+std::string page_of(const TableOptions& options) {
   return options.records.size() == 1 ? "cscd report " + options.records.front() + " -o site"
                                      : "cscd report RECORDS -o site";
 }
@@ -40,14 +38,17 @@ void tables(const TableOptions& options) {
   const std::vector<Record> records = read_records(files);
   const std::vector<FilledTable> made = filled_tables(records);
   const std::vector<ShapedTable> shaped = shaped_tables(made, records, options.intervals);
-  const std::vector<ClaimResult> claims = judge_claims(records);
+  const std::vector<ClaimResult> claims =
+      options.no_claims ? std::vector<ClaimResult>() : judge_claims(records);
   if (options.folder.empty()) {
-    std::fputs(tables_text(shaped, claims, records, page_of(options, files.front())).c_str(), stdout);
+    std::fputs(tables_text(shaped, claims, records, page_of(options)).c_str(), stdout);
     return;
   }
   const fs::path folder(options.folder);
   OutputFile json(folder / "tables.json", options.force), text(folder / "tables.md", options.force, ".md"),
-      csv(folder / "tables.csv", options.force, ".csv"), page(folder / "claims.md", options.force, ".md");
+      csv(folder / "tables.csv", options.force, ".csv");
+  std::optional<OutputFile> page;  // tables.md links it where there is a claim to link
+  if (any_measured(claims)) page.emplace(folder / "claims.md", options.force, ".md");
   std::vector<ShapedTable> all = shaped;
   all.push_back(times_of_strategies(records, options.intervals));
   std::deque<OutputFile> floats;
@@ -57,7 +58,7 @@ void tables(const TableOptions& options) {
   text.commit(tables_markdown(shaped, all.back(), claims, records));
   csv.commit(tables_csv(made));
   for (std::size_t i = 0; i < all.size(); ++i) floats[i].commit(latex_table(all[i]));
-  page.commit(claims_markdown(claims));
+  if (page) page->commit(claims_markdown(claims));
 }
 
 }  // namespace
@@ -69,7 +70,8 @@ void add_tables(CLI::App& app) {
       "Make the paper's tables from records, published figures beneath measured ones.\n\n"
       "  cscd tables results/FOLDER                in the terminal\n"
       "  cscd tables rope.json rope-published.json\n"
-      "  cscd tables rope.json --out results/new   tables.md, claims.md; every figure of every strategy in\n"
+      "  cscd tables rope.json --out results/new   tables.md, and claims.md where the records allow claims;\n"
+      "                                            every figure of every strategy in\n"
       "                                            tables.json and .csv; table1.tex and so on for LaTeX.\n"
       "                                            The folder has to exist\n\n"
       "Times are means over the timed intervals, the median over the repetitions; ratios are paired within "
@@ -82,6 +84,8 @@ void add_tables(CLI::App& app) {
       ->required();
   command->add_option("--out", options->folder, "the folder for the files");
   command->add_flag("--intervals", options->intervals, "lines with the ends of the 95 % intervals too");
+  command->add_flag("--no-claims", options->no_claims,
+                    "hold no claim of the paper against these records, and write no claims.md");
   command->add_flag("--force", options->force, "replace files that exist");
   command->callback([options] { tables(*options); });
 }
