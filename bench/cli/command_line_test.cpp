@@ -195,10 +195,10 @@ TEST_F(CommandLine, DrawsFiguresOfAFileIntoTheFolderAlone) {
   old["scene"]["name"] = (folder / "model.h5").string();  // as older records have it
   put("old.json", old.dump());
   for (const char* record : {"r.json", "old.json"}) {
-    const Ran ran =
-        run("mkdir figures; '" + scripts + "/figures' " + record + " --out figures && ls figures | head -1");
+    const Ran ran = run("'" + scripts + "/figures' " + record + " --out figures && ls figures | head -1");
     EXPECT_EQ(ran.status, 0) << ran.errors;
     EXPECT_EQ(ran.out.substr(0, 5), "model") << ran.out;
+    EXPECT_NE(ran.errors.find("drawn: figures/model"), std::string::npos) << ran.errors;
     EXPECT_EQ(run("rm -r figures").status, 0);
     EXPECT_EQ(files(), "model.h5 old.json r.json");
   }

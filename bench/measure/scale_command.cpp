@@ -12,6 +12,7 @@
 #include "bench/cli/output/progress.h"
 #include "bench/cli/output/schema.h"
 #include "bench/measure/record/environment.h"
+#include "bench/measure/record/shortfall.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/studies/scale_study.h"
 #include "bench/measure/studies/scale_summary.h"
@@ -276,11 +277,15 @@ void print(const ordered_json& subject) {
                 is_thick ? "thickness" : "step", step.at(is_thick ? "thickness" : "step").dump().c_str(),
                 step.at("colliding").get<std::size_t>(), step.at("starts").size(),
                 is_thick ? "come that close" : "collide");
-    for (const ordered_json& row : step.at("strategies"))
-      if (row.contains("ms"))
-        std::printf("  %s %.2f ms", row.at("name").get<std::string>().c_str(),
-                    row.at("ms").at("total").get<double>());
-    std::printf("\n");
+    std::string lacking;  // what stands behind the marks
+    for (const ordered_json& row : step.at("strategies")) {
+      if (!row.contains("ms")) continue;
+      const std::string name = row.at("name"), less = row.value("shortfall", "");
+      const std::string mark = less.empty() ? "" : std::string(kShortfallMark);
+      std::printf("  %s %.2f ms%s", name.c_str(), row.at("ms").at("total").get<double>(), mark.c_str());
+      if (!less.empty()) lacking += "    " + mark + " " + name + " " + less + "\n";
+    }
+    std::printf("\n%s", lacking.c_str());
   }
   std::fflush(stdout);
 }

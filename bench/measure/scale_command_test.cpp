@@ -300,6 +300,8 @@ TEST_F(ScaleProgram, TakesASceneAndItsVariantWithContactsInTurn) {
              &all = subject.at("steps")[1].at("strategies")[1].at("counts");
   EXPECT_EQ(subject.at("strategies")[0].at("name"), "drvbc --first");
   EXPECT_LT(first.at("contacts"), all.at("contacts"));
+  for (const auto& row : subject.at("steps")[1].at("strategies"))
+    EXPECT_FALSE(row.contains("shortfall")) << "a row with --first is asked for no later contact";
   EXPECT_LT(first.at("elementary_tests"), all.at("elementary_tests"));
   EXPECT_TRUE(out.at("fits").empty());
 }
@@ -321,6 +323,14 @@ TEST_F(ScaleProgram, TakesTheSameIntervalsAtEveryThickness) {
     EXPECT_EQ(base.at("counts").at("contacts"), complete.at("counts").at("contacts"));
     EXPECT_GT(base.at("counts").at("contacts"), contacts);
     contacts = base.at("counts").at("contacts");
+    EXPECT_FALSE(base.contains("shortfall") || complete.contains("shortfall"));
+    const std::size_t starts = step.at("starts").size(),
+                      unclear = starts - step.at("clear").get<std::size_t>();
+    const std::string lacking = step.at("strategies")[1].value("shortfall", "");
+    EXPECT_EQ(lacking.find("promise void on " + std::to_string(unclear) + " of " + std::to_string(starts)) !=
+                  std::string::npos,
+              unclear > 0)
+        << lacking;
   }
   EXPECT_EQ(out.at("thickness_ratios").size(), 6u);
 }

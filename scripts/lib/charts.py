@@ -3,6 +3,7 @@ picture is a small PNG whose bytes depend on the record alone."""
 import io
 import itertools
 import math
+import sys
 import zlib
 
 import matplotlib
@@ -204,7 +205,8 @@ def reduced(image, shaded):
 
 
 def save(figure, folder, name, shaded=False, dpi=None, pdf=False):
-    """Writes FOLDER/NAME.png, and NAME.pdf where a paper may want it, and closes the figure."""
+    """Writes FOLDER/NAME.png, and NAME.pdf where a paper may want it, closes the figure, and says so: some figures take a minute."""
+    folder.mkdir(parents=True, exist_ok=True)
     if pdf:
         figure.savefig(folder / f"{name}.pdf", metadata={"CreationDate": None})
     buffer = io.BytesIO()
@@ -212,3 +214,4 @@ def save(figure, folder, name, shaded=False, dpi=None, pdf=False):
     plt.close(figure)
     buffer.seek(0)
     reduced(Image.open(buffer), shaded).save(folder / f"{name}.png", optimize=True)
+    print(f"drawn: {folder / name}.png" + (f", {name}.pdf" if pdf else ""), file=sys.stderr, flush=True)

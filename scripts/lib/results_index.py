@@ -1,10 +1,13 @@
-"""results/README.md: one row a record that git tracks, from the records alone."""
+"""results/README.md: one row a record that git tracks, from the records alone; and whether git has the commits that records name."""
 import re
+import subprocess
 
 from markdown import table
 from records import read_json
+from scale_page import page as scale_page
+from scale_record import Record
 from script import ROOT, refuse
-from tracked import tracked_files
+from tracked import git, is_checkout, tracked_files
 
 RESULTS = ROOT / "results"
 KINDS = ("full", "starts", "cloth", "real", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "thickness", "motion", "latency", "waits")
@@ -27,10 +30,11 @@ and its kind.
 | motion | `scripts/record motion DIR` | where the true motion of characters differs from straight lines, and what it costs to ask |
 | latency; at first waits | `scripts/record latency BASE` | preparation, all contacts, contacts, long steps and threads, before and after |
 
-The newest record of each kind is here. A record is never rewritten after its day; whatever is found out later stands in a
-`notes.md` in its folder, which says when it was written. Records (`*.json.gz`) are compressed; `cscd tables` and the scripts
-read them as they are. `cscd report` makes a page of all figures of a record, `scripts/figures` draws them as files, and
-`cscd tables --out` writes them as TeX; the few pictures beside records are those that pages show.
+The newest record of each kind is here. A record (`*.json.gz`) is never rewritten after its day; whatever is found out later stands
+in a `notes.md` in its folder, which says when it was written. A page beside a record may be made anew from it, as `scripts/pages`
+does with pages of how cost grows. Records are compressed; `cscd tables` and the scripts read them as they are. `cscd report` makes
+a page of all figures of a record, `scripts/figures` draws them as files, and `cscd tables --out` writes them as TeX; the few
+pictures beside records are those that pages show.
 
 What single commits took, one small file each, is on [a page of its own](history/README.md), and so is [what was done to find
 faults](trust/README.md): mutants, coverage and the like.
@@ -45,6 +49,13 @@ each below the commit that removed it, and the second shows a file of such a fol
 
 ## Records that are here
 """
+
+
+# Commits that records name and git does not have, and why that is so. The page of results prints the reasons.
+MISSING_COMMITS = {
+    "52b1cc0b60": "the record of the true motion was measured from a commit that was rewritten before it came here, so its sources cannot be "
+                  "built again; the record came with commit `c78c47848e`",
+}
 
 
 def kind_of(folder):
@@ -92,4 +103,48 @@ def page():
                       f"{environment.get('instruction_set', 'instruction set not recorded')}",
                       f"`{environment['commit'][:10]}`", links]))
     rows = [row for _, _, row in sorted(rows, reverse=True)]
-    return HEAD + "\n" + "\n".join(table(["date", "kind", "machine", "commit", "pages"], rows, text_columns=5)) + "\n"
+    missing = [f"\nGit has no commit `{commit}`: {why}.\n" for commit, why in MISSING_COMMITS.items()]
+    return HEAD + "\n" + "\n".join(table(["date", "kind", "machine", "commit", "pages"], rows, text_columns=5)) + "\n" + "".join(missing)
+
+
+def scale_pages():
+    """By name, how the page of each record of `cscd scale` is made of the record and of the charts beside it."""
+    pages = {}
+    for path in tracked_files("results"):
+        if path.name == "scale.json.gz":
+            drawn = {chart.stem.removeprefix("scale-") for chart in path.parent.glob("scale-*.png")}
+            name = (path.parent / "scale.md").relative_to(ROOT).as_posix()
+            pages[name] = lambda path=path, drawn=drawn: scale_page(Record(read_json(path)), drawn)
+    return pages
+
+
+def commits_named():
+    """The commits that records and entries of the history name, each with a file that names it."""
+    named = {}
+    for path in tracked_files("results"):
+        document = read_json(path) if path.name.endswith((".json", ".json.gz")) else None
+        if not isinstance(document, dict):
+            continue
+        notes = document.get("notes")
+        for part in (document, document.get("environment"), notes.get("environment") if isinstance(notes, dict) else None):
+            if isinstance(part, dict) and isinstance(part.get("commit"), str):
+                named.setdefault(part["commit"].split(" ")[0], path)  # "with changes" may follow
+    return named
+
+
+def commit_faults():
+    """Commits that git does not have although a record names them, and reasons in MISSING_COMMITS that nothing needs any more. Finds nothing
+    where git cannot know: in an export, in a clone without the whole history, and where the files were put into a repository of their own."""
+    if not is_checkout(ROOT) or git(ROOT, "rev-parse", "--is-shallow-repository") != ["false"]:
+        return []
+    named = commits_named()
+    asked = "".join(f"{commit}^{{commit}}\n" for commit in named)
+    done = subprocess.run(["git", "-C", str(ROOT), "cat-file", "--batch-check"], input=asked, capture_output=True, text=True, check=True)
+    lost = {commit: path for (commit, path), line in zip(named.items(), done.stdout.splitlines()) if " commit " not in line}
+    faults = [f"{path.relative_to(ROOT)}: git has no commit {commit[:10]}; measure from a commit that stays, or say why in MISSING_COMMITS "
+              "(scripts/lib/results_index.py)" for commit, path in lost.items() if commit[:10] not in MISSING_COMMITS]
+    if len(lost) == len(named):
+        return []
+    needed = {commit[:10] for commit in lost}
+    return faults + [f"MISSING_COMMITS (scripts/lib/results_index.py): {commit} is not missing, or no record names it; remove the line"
+                     for commit in MISSING_COMMITS if commit not in needed]

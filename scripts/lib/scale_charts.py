@@ -1,7 +1,7 @@
-"""The charts of scripts/figures scale: a panel a scene, a curve a strategy."""
+"""The charts of scripts/figures scale: a panel a scene, a curve a strategy. A star behind a name says that some of its times have a mark on the page."""
 from charts import (STAGES, label_panels, left_out, line_style, log_axis, marker, panels, plt, save, shown, spans_decades,
                     ticks)
-from scale_record import count, per_triangle, row, series, speedups, stage
+from scale_record import count, per_triangle, row, series, speedups, stage, starred
 
 FEW_ROWS = 4  # strategies in a chart that has two curves for each
 
@@ -67,7 +67,7 @@ def draw_size(record, folder, everything):
 
     def curves(scene):
         for name in names:
-            yield (series(record.of("size", scene), name, stage("total")), name, record.fit("size", scene, name, "total"),
+            yield (series(record.of("size", scene), name, stage("total")), starred(record, "size", scene, name), record.fit("size", scene, name, "total"),
                    style(name))
 
     return draw_over_triangles(record, folder, "size", curves, "ms a query, refit included",
@@ -117,7 +117,7 @@ def draw_step(record, folder, everything):
         ends = []
         for name in names:
             ends += draw_curve(axes, [(step["step"], asked["ms"]["total"]) for step in steps
-                                      if (asked := row(step, name)) and "ms" in asked], name, **style(name))
+                                      if (asked := row(step, name)) and "ms" in asked], starred(record, "step", scene, name), **style(name))
         for step in steps:
             if step["colliding"]:
                 axes.axvspan(step["step"] / 1.19, step["step"] * 1.19, color="#D55E00", zorder=0, lw=0,
@@ -137,7 +137,7 @@ def draw_bones(record, folder, everything):
     def draw(axes, scene):
         subjects = record.of("bones", scene)
         ends = [end for name in names for end in draw_curve(
-            axes, series(subjects, name, stage("total"), "bones"), name, record.fit("bones", scene, name, "total"),
+            axes, series(subjects, name, stage("total"), "bones"), starred(record, "bones", scene, name), record.fit("bones", scene, name, "total"),
             **style(name))]
         axes.set_xscale("log")
         log_axis(axes.yaxis)
@@ -156,7 +156,7 @@ def draw_threads(record, folder, everything):
         axes.plot(counts, counts, lw=0.9, ls=":", color="#666666")
         ends = [(counts[-1], counts[-1], "ideal", "#666666")]
         for name in names:
-            ends += draw_curve(axes, list(speedups(record, scene, name).items()), name, **style(name))
+            ends += draw_curve(axes, list(speedups(record, scene, name).items()), starred(record, "threads", scene, name), **style(name))
         if spans_decades(counts):
             axes.set_xscale("log")
         axes.set_ylim(bottom=0)
@@ -185,7 +185,8 @@ def draw_contacts(record, folder, most):
             filling = {"alpha": 0.55, "hatch": "////", "edgecolor": "white"}
         elif look["ls"] != "-":
             filling = {"hatch": "..", "edgecolor": "white"}
-        axes.bar([x for x, _ in found], [r["ratio"] for _, r in found], wide, label=name, color=look["color"], **filling)
+        label = max((starred(record, "contacts", scene, name) for scene in scenes if row(record.of("contacts", scene)[0], name)), key=len, default=name)
+        axes.bar([x for x, _ in found], [r["ratio"] for _, r in found], wide, label=label, color=look["color"], **filling)
         for x, r in found:
             if "low" in r:
                 axes.plot([x] * 2, [r["low"], r["high"]], color="#666666", lw=1)

@@ -32,6 +32,57 @@ class Record:
         return f"{found['exponent']:.2f}" if found else "–"
 
 
+FIRST = " --first"  # ends the name of a row that is asked for the earliest contact alone
+MARK = "\\*"  # on a page in Markdown
+
+
+def guarantee(subject, name):
+    return next(row["guarantee"] for row in subject["strategies"] if row["name"] == name)
+
+
+def lacks(subject, step, name):
+    """What a row's answers in a step lack, in words; nothing where it keeps all contacts and promises something from every start. The record
+    says it; of an older one it follows from the contacts that the complete rows count in as many intervals."""
+    own = row(step, name)
+    if not own or not own["intervals"]:
+        return ""
+    if "shortfall" in own:
+        return own["shortfall"]
+    promise = guarantee(subject, name)
+    if promise == "complete":
+        return ""
+    starts = len(step["starts"])
+    void = starts - step.get("clear", step["embedded"]) if promise in ("first_contact", "all_from_embedded") else 0
+    found = contacts_of(own)
+    complete = [contacts_of(other) for other in step["strategies"]
+                if guarantee(subject, other["name"]) == "complete" and not other["name"].endswith(FIRST)
+                and other["intervals"] == own["intervals"]]
+    texts = []
+    if not name.endswith(FIRST) and complete and found < max(complete):
+        texts.append(f"kept {found} of {max(complete)} contacts")
+    if not name.endswith(FIRST) and not complete and step["colliding"]:
+        texts.append("may have lost contacts, as no complete row answered the same intervals")
+    if void > 0:
+        texts.append(f"promise void on {void} of {starts} intervals")
+    return "; ".join(texts)
+
+
+def contacts_of(row):
+    """All contacts that a row counted in its intervals, of which the record keeps the mean."""
+    return round(row["counts"].get("contacts", 0) * row["intervals"])
+
+
+def mark(subject, step, name):
+    """What stands behind every time of a row in a step, as the tables have it (bench/measure/record/shortfall.h)."""
+    return MARK if lacks(subject, step, name) else ""
+
+
+def starred(record, study, scene, name):
+    """The name of a row as charts label its times: with a star where any of its steps has a mark."""
+    subjects = record.of(study, scene)
+    return name + ("*" if any(mark(subject, step, name) for subject in subjects for step in subject["steps"]) else "")
+
+
 def row(of, name):
     """The row of a strategy, of a step or of a whole subject."""
     return next((r for r in of["strategies"] if r["name"] == name), None)

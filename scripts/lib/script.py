@@ -39,6 +39,14 @@ def existing_folder(path):
     return path
 
 
+def made_folder(path):
+    """A folder for results, which is made where it is missing."""
+    if path.exists() and not path.is_dir():
+        refuse(f"{path}: is there and is not a folder; name another")
+    path.mkdir(parents=True, exist_ok=True)
+    return path
+
+
 def output_of(*words, **options):
     """What a command prints; refuses a command that fails, with the last lines that it printed."""
     done = subprocess.run([str(word) for word in words], capture_output=True, text=True, **options)

@@ -7,11 +7,14 @@ bool needs_embedded_start(const std::string& guarantee) {
          guarantee == to_string(Guarantee::all_from_embedded);
 }
 
+bool is_short(const Shortfall& lacking) {
+  return lacking.contacts_found < lacking.contacts_expected || lacking.void_intervals > 0;
+}
+
 std::optional<Shortfall> shortfall(const VerificationRecord& verification, const VerifiedStrategy& row) {
   const Shortfall lacking{row.contacts_expected, row.contacts_found, verification.intervals.size(),
                           needs_embedded_start(row.guarantee) ? verification.unembedded.size() : 0};
-  if (lacking.contacts_found >= lacking.contacts_expected && lacking.void_intervals == 0) return std::nullopt;
-  return lacking;
+  return is_short(lacking) ? std::optional(lacking) : std::nullopt;
 }
 
 std::optional<Shortfall> shortfall(const Record& record, std::string_view strategy) {

@@ -20,6 +20,9 @@ struct Shortfall {
   std::size_t void_intervals = 0;  // of these, with a start that is not embedded: the row promises nothing
 };
 
+// Whether anything is lacking at all.
+bool is_short(const Shortfall& lacking);
+
 // Returns nothing where the row found all contacts and promises something on every verified interval, and
 // where the record did not verify the row.
 std::optional<Shortfall> shortfall(const Record& record, std::string_view strategy);

@@ -8,6 +8,7 @@
 
 #include "bench/compare/statistics.h"
 #include "bench/measure/record/record.h"
+#include "bench/measure/record/shortfall.h"
 #include "bench/measure/replay/footprint.h"
 #include "bench/measure/replay/timing.h"
 #include "bench/measure/strategies/catalogue.h"
@@ -37,6 +38,8 @@ struct Entrant {
   // By step: one interval's counters a place, and [repetition][interval] of every stage.
   std::vector<CountColumns> counts;
   std::vector<TimeColumns> ms, once;  // repeated; while it was verified
+  // By step: what the answers lack on the intervals that the reference answered too.
+  std::vector<Shortfall> lacking;
   // By interval: what the strategy promises of its contacts, empty where it did not answer.
   std::vector<std::string> promised;
 };
@@ -76,12 +79,13 @@ class Measurement {
         left_out_.push_back({{"name", row.name()}, {"why", *why}});
         continue;
       }
-      entrants_.push_back({row, make(row, test), row == reference, {}, {}, {}, {}});
+      entrants_.push_back({row, make(row, test), row == reference, {}, {}, {}, {}, {}});
     }
     for (Entrant& c : entrants_) {
       c.counts.resize(subject.steps.size());
       c.ms.resize(subject.steps.size());
       c.once.resize(subject.steps.size());
+      c.lacking.resize(subject.steps.size());
       c.promised.resize(interval_count());
     }
     verified_.resize(subject.steps.size());
@@ -121,6 +125,7 @@ class Measurement {
         keep(c, i, answer(c, asked(interval, i), found), found);
         const std::string where = label(c, i);
         if (judged) {
+          compare_with(truth, found, promise_holds, c, c.lacking[step_of(i)]);
           const Verification judgement = bench::verify(truth, found, c.row, promise_holds);
           if (!judgement.ok) verified.failures.push_back(where + judgement.failure);
         } else if (!told) {
@@ -198,6 +203,17 @@ class Measurement {
   // Begins the line of a failure, under the step that it belongs to.
   std::string label(const Entrant& c, std::size_t interval) const {
     return c.row.name() + ", from frame " + std::to_string(start_of(interval)) + ": ";
+  }
+  // Counts what an answer lacks of the reference's. A row that is asked for the first contact lacks nothing
+  // but that one.
+  static void compare_with(const ContactSet& truth, const ContactSet& found, bool promise_holds,
+                           const Entrant& c, Shortfall& out) {
+    const std::size_t all = truth.contacts.size();
+    out.contacts_expected += c.row.first ? std::min<std::size_t>(all, 1) : all;
+    out.contacts_found += found.contacts.size();
+    ++out.intervals;
+    out.void_intervals +=
+        !promise_holds && needs_embedded_start(std::string(to_string(c.row.strategy->guarantee)));
   }
   bool is_timed(const Entrant& c) const {
     return std::ranges::find(subject_.rows, c.row) != subject_.rows.end();
@@ -306,6 +322,8 @@ class Measurement {
     ordered_json counts = ordered_json::object();
     for (const auto& [name, values] : c.counts[s])
       counts[name] = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+    if (const Shortfall& lacking = c.lacking[s]; is_short(lacking))
+      row["shortfall"] = shortfall_text(lacking);
     row["intervals"] = c.counts[s].empty() ? 0 : c.counts[s].begin()->second.size();
     row["counts"] = std::move(counts);
     if (!verified_[s].failures.empty()) return row;  // no time without a verified answer

@@ -17,7 +17,7 @@ import accuracy_charts
 from accuracy_sums import CLASSES, GROUPS, sums
 from markdown import built, picture, table
 from records import read_record
-from script import existing_folder, parser_of
+from script import made_folder, parser_of
 
 SCHEMA = "cscd.accuracy/1"
 
@@ -216,10 +216,10 @@ def write_csv(record, path):
 def main():
     parser = parser_of(__doc__)
     parser.add_argument("record", type=pathlib.Path)
-    parser.add_argument("--out", required=True, type=pathlib.Path, help="an existing folder")
+    parser.add_argument("--out", required=True, type=pathlib.Path, help="the folder, which is made where it is missing")
     parser.add_argument("--pdf", action="store_true", help="every chart as PDF too")
     arguments = parser.parse_args()
-    existing_folder(arguments.out)
+    made_folder(arguments.out)
     record = read_record(arguments.record, SCHEMA, "cscd accuracy")
     drawn = accuracy_charts.draw_all(record, arguments.out, arguments.pdf)
     write_csv(record, arguments.out / "accuracy.csv")

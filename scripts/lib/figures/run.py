@@ -19,7 +19,7 @@ from charts import (START_TEST, STAGES, label_ends, left_out, line_style, matplo
                     spans_decades)
 from published import PAPER, over
 from records import MARK_NOTE, mark_of, plain, read_records
-from script import existing_folder, parser_of, refuse
+from script import made_folder, parser_of, refuse
 
 SCHEMA = "cscd.run/2"
 TITLES = {START_TEST: "test of the start,\noutside the query", "total": "total\nwithout refit"}
@@ -233,11 +233,11 @@ def read(paths):
 def main():
     parser = parser_of(__doc__)
     parser.add_argument("records", nargs="+", type=pathlib.Path, metavar="RECORDS")
-    parser.add_argument("--out", required=True, type=pathlib.Path, help="an existing folder")
+    parser.add_argument("--out", required=True, type=pathlib.Path, help="the folder, which is made where it is missing")
     parser.add_argument("--strategy", help="the curves of Figures 11 and 12, with commas between; default " + ",".join(PAPERS))
     parser.add_argument("--all", action="store_true", help="all rows in the charts of times")
     arguments = parser.parse_args()
-    folder = existing_folder(arguments.out)
+    folder = made_folder(arguments.out)
     scenes = {}  # by name, then by pipeline
     for record in read(arguments.records):
         of_pipeline = scenes.setdefault(plain(record["scene"]["name"]), {})

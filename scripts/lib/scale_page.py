@@ -1,0 +1,382 @@
+"""The page of how cost grows, from a record of `cscd scale`."""
+from markdown import built, picture, short, table
+from scale_record import FIRST, MARK, Record, count, lacks, mark, per_triangle, row, series, speedups, stage
+
+LONG = 3  # the step, in frames, at which time is to be nearly that of one frame
+MANY = 16  # threads that the page foresees
+JUMP = 1.25  # exponent between neighbouring sizes above which one exponent over all sizes says too little
+STEEP = 1.1  # exponent above which time grows faster than the triangles
+NOWHERE = (f"Nowhere in this record, as far as these rules see: `drvbc_fast` loses where its time grows faster than with the power {STEEP} "
+           "of the triangles, or jumps from one size to the next; where another row is faster in every repetition; and where long "
+           "steps, contacts or bones cost it far more than they should. Preparation and other rows are not judged.")
+CONTACTS = 2  # times what the plain scene takes: what contacts may cost
+STAGES = (("refit", "refit"), ("rv_update", "classification"), ("traversal", "traversal"), ("elementary", "elementary tests"))
+QUANTITIES = (("ms", stage("total")), ("preparation, ms", lambda prepared, asked: prepared["make_ms"]), ("BVOT", count("bvot")),
+              ("PCTP", count("pctp")), ("bytes a triangle", per_triangle))
+
+
+def marked(subject, lengths, name):
+    """The mark of a ratio of times of steps of these lengths."""
+    return "".join(sorted({mark(subject, step, name) for step in subject["steps"] if step["step"] in lengths}))
+
+
+def bounded(ratio, mark_of=""):
+    """A ratio with the mark of its times, and its interval, where it has one."""
+    if not ratio:
+        return "–"
+    return f"{ratio['ratio']:.2f}{mark_of}" + (f" [{ratio['low']:.2f}, {ratio['high']:.2f}]" if "low" in ratio else "")
+
+
+def drawing(drawn, name, title):
+    return picture(f"scale-{name}", title) if name in drawn else []
+
+
+def size_part(record, drawn):
+    scenes = record.scenes("size")
+    if not scenes:
+        return []
+    first = record.names("size")[0]
+    sizes = [s["triangles"] for s in record.of("size")]
+    text = ["## With triangles", "",
+            f"Each scene with {min(sizes):,} to {max(sizes):,} triangles in the same motion. Exponents of a least-squares line in "
+            "log-log: 1 is linear, 2 quadratic.", ""]
+    lines = []
+    for name in record.names("size"):
+        for key, title in (("total", "time"), *STAGES, ("make_ms", "preparation"), ("bvot", "BVOT"), ("pctp", "PCTP")):
+            cells = [record.exponent("size", scene, name, key) for scene in scenes]
+            if any(cell != "–" for cell in cells):
+                lines.append([f"`{name}`: {title}"] + cells)
+    text += table(["exponent"] + scenes, lines) + ["", "–: absent, or zero at all but two sizes.", ""]
+    text += drawing(drawn, "size", "time against triangles")
+    largest = {scene: max(record.of("size", scene), key=lambda s: s["triangles"]) for scene in scenes}
+    lines = []
+    for name in record.names("size"):
+        for title, value in QUANTITIES:
+            pairs = [(row(largest[scene], name), row(largest[scene]["steps"][0], name)) for scene in scenes]
+            lines.append([f"`{name}`: {title}"] + [
+                short(value(*pair)) + (mark(largest[scene], largest[scene]["steps"][0], name) if title == "ms" else "") if all(pair) else "–"
+                for scene, pair in zip(scenes, pairs)])
+    text += ["At the largest size:", ""]
+    text += table(["", *(f"{scene}, {largest[scene]['triangles']:,}" for scene in scenes)], lines) + [""]
+    text += drawing(drawn, "stages", f"stages of {first} against triangles")
+    text += drawing(drawn, "pairs", "overlap tests and pairs against triangles")
+    text += ["Memory is what stays resident when the strategy has been made and has answered twice, over what was there before; "
+             "small surfaces pay for whole pages.", ""]
+    text += drawing(drawn, "memory", "bytes a triangle against triangles")
+    return text
+
+
+def step_part(record, drawn):
+    scenes = record.scenes("step")
+    if not scenes:
+        return []
+    text = ["## With the length of the step", "",
+            "The same surfaces, intervals that end more or fewer frames later. A share of a frame ends on the straight line to "
+            f"the next. Time at {LONG} frame steps over that at 1, [95 % interval]:", ""]
+    text += table([f"{LONG}x over 1x"] + scenes, [
+        [f"`{name}`", *(bounded(record.ratios.get((scene, name, LONG)), marked(record.of("step", scene)[0], (1, LONG), name)) for scene in scenes)]
+        for name in record.names("step")]) + [""]
+    text += drawing(drawn, "step", "time against the length of the step")
+    steps = [step["step"] for step in record.of("step")[0]["steps"]]
+    by_length = {scene: {step["step"]: step for step in record.of("step", scene)[0]["steps"]} for scene in scenes}
+    lines = [[scene, *(f"{by[s]['colliding']} of {len(by[s]['starts'])}" if s in by else "–" for s in steps)]
+             for scene, by in by_length.items()]
+    text += ["Intervals with a contact. Beyond one frame step vertices move in straight lines where the scene's bones turn, so "
+             "that limbs pass through each other that never meet in the scene:", ""]
+    text += table(["step"] + [f"{length:g}" for length in steps], lines) + [""]
+    name = record.names("step")[0]
+    lines = []
+    for scene in scenes:
+        by = {length: row(step, name) for length, step in by_length[scene].items()}
+        for key in ("bvot", "pctp"):
+            lines.append([f"{scene}: {key.upper()}"] + [short(by[s]["counts"].get(key)) if s in by else "–" for s in steps])
+        lines.append([f"{scene}: ms"] + [short(by[s].get("ms", {}).get("total")) + mark(record.of("step", scene)[0], by_length[scene][s], name)
+                                         if s in by else "–" for s in steps])
+    text += [f"`{name}`, step by step:", ""] + table(
+        ["step"] + [f"{length:g}" for length in steps], lines) + [""]
+    return text
+
+
+def bones_part(record, drawn):
+    scenes = record.scenes("bones")
+    if not scenes:
+        return []
+    text = ["## With bones", "", "The same surface in the same motion; the chain's bones are merged or cut.", ""]
+    for scene in scenes:
+        subjects = record.of("bones", scene)
+        lines = []
+        for name in record.names("bones"):
+            for title, value in QUANTITIES:
+                found = dict(series(subjects, name, value, "bones"))
+                lines.append([f"`{name}`: {title}"] + [
+                    short(found.get(s["bones"], 0)) + (mark(s, s["steps"][0], name) if title == "ms" else "") for s in subjects])
+        text += table([f"{scene}, bones"] + [str(s["bones"]) for s in subjects], lines) + [""]
+    return text + drawing(drawn, "bones", "time against bones")
+
+
+def predicted(subjects, name):
+    """How many times as fast as on one thread MANY would be, by Amdahl's law fitted to each stage, or None.
+
+    A stage that takes a on one thread and b on n has the serial share (n b / a - 1) / (n - 1), held to [0, 1]."""
+    most = max(s["threads"] for s in subjects)
+    if most == 1:
+        return None
+    one, many = 0, 0
+    for key, _ in STAGES:
+        found = dict(series(subjects, name, stage(key), "threads"))
+        if not found.get(1) or found.get(most) is None:
+            continue
+        serial = min(1, max(0, (most * found[most] / found[1] - 1) / (most - 1)))
+        one += found[1]
+        many += found[1] * (serial + (1 - serial) / MANY)
+    return one / many if many else None
+
+
+def threads_part(record, drawn):
+    scenes = record.scenes("threads")
+    if not scenes:
+        return []
+    where = record.raw["environment"]
+    text = ["## With threads", "", f"The same surface; the machine has {where['cores']} hardware threads. "
+            "–: no time, as an answer was wrong or a stage has nothing to do.", ""]
+    beyond = []
+    for scene in scenes:
+        subjects = record.of("threads", scene)
+        lines = []
+        for name in record.names("threads"):
+            for key, title in (("total", "ms"), *STAGES):
+                found = dict(series(subjects, name, stage(key), "threads"))
+                if found:
+                    lines.append([f"`{name}`: {title}"] + [short(found.get(s["threads"])) + mark(s, s["steps"][0], name) for s in subjects])
+            found = speedups(record, scene, name)
+            lines.append([f"`{name}`: times as fast as on one"] + [short(found.get(s["threads"])) for s in subjects])
+            if foreseen := predicted(subjects, name):
+                beyond.append([f"`{name}` on {scene}", short(foreseen)])
+        text += table([f"{scene}, {subjects[0]['triangles']:,} triangles, threads"] +
+                      [str(s["threads"]) for s in subjects], lines) + [""]
+    if beyond:
+        text += [f"Not measured: what {MANY} threads would gain if each stage kept its serial share (Amdahl's law, fitted to one thread "
+                 "and the largest number above).", "", *table(["", f"times as fast on {MANY} threads"], beyond), ""]
+    return text + drawing(drawn, "threads", "times as fast against threads")
+
+
+def contacts_mark(record, scene, name):
+    """The mark of a ratio of the times with and without contacts."""
+    subject = record.of("contacts", scene)[0]
+    return "".join(sorted({mark(subject, step, name) for step in subject["steps"]}))
+
+
+def contacts_part(record, drawn):
+    scenes = record.scenes("contacts")
+    if not scenes:
+        return []
+    steps = {scene: record.of("contacts", scene)[0]["steps"] for scene in scenes}
+    text = ["## With contacts", "",
+            "Each scene and its variant that collides and is pushed apart, in turn, in the intervals of their clips: the same "
+            "surface, prepared once. A row with `--first` is asked for the earliest contact alone, the others for all that they "
+            "find. Time of the median interval with contacts over that without, [95 % interval]:", ""]
+    lines = [["intervals with a contact"] + [f"{steps[s][1]['colliding']} of {len(steps[s][1]['starts'])}" for s in scenes]]
+    for name in record.names("contacts"):
+        lines.append([f"`{name}`"] + [bounded(record.contacts.get((s, name, "median_interval")), contacts_mark(record, s, name)) for s in scenes])
+    text += table(["with over without"] + scenes, lines) + [""]
+    for scene in scenes:
+        reasons = {}
+        for one in record.of("contacts", scene)[0].get("left_out", []):
+            reasons.setdefault(one["why"].split(":")[0], []).append(f"`{one['name']}`")
+        text += [f"Not run on {scene}: {', '.join(names)} ({why})." for why, names in reasons.items()]
+    text += ([""] if text[-1] else []) + drawing(drawn, "contacts", "time with contacts over time without")
+    text += ["The same of all intervals together, where few with many contacts weigh as much as they take:", ""]
+    text += table(["with over without"] + scenes,
+                  [[f"`{name}`"] + [bounded(record.contacts.get((s, name, "total")), contacts_mark(record, s, name)) for s in scenes]
+                   for name in record.names("contacts")]) + [""]
+    lines = []
+    for name in record.names("contacts"):
+        for title, value in (("ms, median interval", lambda r: r.get("ms", {}).get("median_interval")),
+                             ("ms, mean", lambda r: r.get("ms", {}).get("total")),
+                             ("elementary tests, ms", lambda r: r.get("ms", {}).get("elementary")),
+                             ("PCTP", lambda r: r["counts"].get("pctp"))):
+            def cell(scene, step, value=value, is_time="ms" in title):
+                own = row(step, name)
+                return short(value(own)) + (mark(record.of("contacts", scene)[0], step, name) if is_time else "") if own else "–"
+
+            lines.append([f"`{name}`: {title}"] + [" → ".join(cell(scene, step) for step in steps[scene]) for scene in scenes])
+    return text + ["Without → with:", ""] + table([""] + scenes, lines) + [""]
+
+
+def thickness_part(record):
+    scenes = record.scenes("thickness")
+    if not scenes:
+        return []
+    names = record.names("thickness")
+    base, others = names[0], names[1:]
+    text = ["## With a thickness", "",
+            "Features count that come within a thickness, in mean edges of the surface at rest, of each other; 0 is touching. Clear starts: "
+            f"starts in which nothing crosses and nothing is that close. Milliseconds a query, the mean; in brackets, times the same row at 0; "
+            f"then, how many times faster than `{base}` whose boxes grow by the same thickness.", ""]
+    lines = []
+    for scene in scenes:
+        subject = record.of("thickness", scene)[0]
+        for step in subject["steps"]:
+            starts, thickness = len(step["starts"]), step["thickness"]
+            cells = [scene, f"{thickness:g}", f"{step['clear']} of {starts}", f"{step['colliding']} of {starts}"]
+            unit = row(step, base)
+            for name in names:
+                own = row(step, name)
+                if not own or "ms" not in own:
+                    cells.append("–")
+                    continue
+                ratio = record.thickness.get((scene, name, thickness))
+                cells.append(short(own["ms"]["total"]) + (mark(subject, step, name))
+                             + (f" ({ratio['ratio']:.2f})" if ratio else "")
+                             + (f", {unit['ms']['total'] / own['ms']['total']:.3g} times" if name in others and unit and "ms" in unit else ""))
+            pairs = row(step, names[-1])
+            lines.append(cells + [short(pairs["counts"].get("contacts")) if pairs and pairs["intervals"] else "–"])
+    head = ["scene", "thickness", "clear starts", "with close pairs", *(f"`{name}`" for name in names), f"close pairs, `{names[-1]}`"]
+    return text + table(head, lines) + [""]
+
+
+def slower(mine, theirs):
+    """Whether a row took longer than another in every repetition. Less than that is noise."""
+    of = [row.get("total_samples") or [row["ms"]["total"]] for row in (mine, theirs)]
+    return min(of[0]) > max(of[1])
+
+
+def time_of(subject, step, own):
+    """What a row takes in a step, with its mark."""
+    return f"{own['ms']['total']:.3g}{mark(subject, step, own['name'])}"
+
+
+def losses(record):
+    """What grows faster than it should, by rule, so that a new record changes it without a hand."""
+    found = []
+    for scene in record.scenes("size"):
+        for name in record.names("size")[:1]:
+            law = record.fit("size", scene, name, "total")
+            others = [n for n in record.names("size") if n != name]
+            subjects = sorted(record.of("size", scene), key=lambda s: s["triangles"])
+            for smaller, larger in zip(subjects, subjects[1:]):
+                growth = larger["triangles"] / smaller["triangles"]
+                times = [row(s["steps"][0], name) for s in (smaller, larger)]
+                if all(one and "ms" in one for one in times):
+                    ratio = times[1]["ms"]["total"] / times[0]["ms"]["total"]
+                    if ratio > growth ** JUMP:
+                        found.append(f"{scene}: from {smaller['triangles']:,} to {larger['triangles']:,} triangles, {growth:.1f} times as "
+                                     f"many, the time of `{name}` grows {ratio:.1f} times.")
+            if law and law["exponent"] > STEEP:
+                found.append(f"{scene}: the time of `{name}` grows with exponent {law['exponent']:.2f}, more than linearly.")
+            for subject in record.of("size", scene):
+                mine = row(subject["steps"][0], name)
+                for other in others:
+                    theirs = row(subject["steps"][0], other)
+                    if mine and theirs and "ms" in mine and "ms" in theirs and slower(mine, theirs):
+                        found.append(f"{scene} with {subject['triangles']:,} triangles: `{name}` takes "
+                                     f"{time_of(subject, subject['steps'][0], mine)} ms, `{other}` {time_of(subject, subject['steps'][0], theirs)} ms.")
+    for scene in record.scenes("step"):
+        for name in record.names("step")[:1]:
+            ratio = record.ratios.get((scene, name, LONG))
+            if ratio and ratio["ratio"] > 1.5:
+                found.append(f"{scene}: `{name}` takes {ratio['ratio']:.2f}{marked(record.of('step', scene)[0], (1, LONG), name)} times as long at {LONG} frame steps as at one.")
+            for step in record.of("step", scene)[0]["steps"]:
+                mine = row(step, name)
+                best = min((r for r in step["strategies"] if "ms" in r), key=lambda r: r["ms"]["total"], default=None)
+                if mine and best and "ms" in mine and slower(mine, best):
+                    found.append(f"{scene} at {step['step']:g} frame steps: `{best['name']}` is faster than `{name}`, "
+                                 f"{time_of(record.of('step', scene)[0], step, best)} against {time_of(record.of('step', scene)[0], step, mine)} ms.")
+    for scene in record.scenes("contacts"):
+        name = record.of("contacts", scene)[0]["strategies"][0]["name"]
+        for asked in (name, name + FIRST):
+            for of, title in (("median_interval", "in the median interval"), ("total", "over all intervals")):
+                ratio = record.contacts.get((scene, asked, of))
+                if ratio and ratio["ratio"] > CONTACTS:
+                    found.append(f"{scene} with contacts: `{asked}` takes {ratio['ratio']:.2f}{contacts_mark(record, scene, asked)} times as long as without, {title}.")
+        for step in record.of("contacts", scene)[0]["steps"]:
+            mine = row(step, name)
+            asked_alike = [r for r in step["strategies"] if "ms" in r and not r["name"].endswith(FIRST)]
+            best = min(asked_alike, key=lambda r: r["ms"]["total"], default=None)
+            if mine and best and "ms" in mine and slower(mine, best):
+                found.append(f"{step['scene']}: `{best['name']}` is faster than `{name}`, {time_of(record.of('contacts', scene)[0], step, best)} "
+                             f"against {time_of(record.of('contacts', scene)[0], step, mine)} ms.")
+    for scene in record.scenes("bones"):
+        law = record.fit("bones", scene, record.names("bones")[0], "total")
+        if law and law["exponent"] > 0.5:
+            found.append(f"{scene}: time grows with the number of bones, exponent {law['exponent']:.2f}.")
+    return found
+
+
+def checked_part(record):
+    raw = record.raw
+    steps = [step for subject in raw["subjects"] for step in subject["steps"]]
+    failures = [f for step in steps for f in step["verified"]["failures"]]
+    against = sum(step["verified"]["by_reference"] for step in steps)
+    other = sum(step["verified"]["by_each_other"] for step in steps)
+    embedded = sum(step["embedded"] for step in steps)
+    where = raw["environment"]
+    text = ["## How to read it", "",
+            f"- {against} intervals were answered by the complete reference too and held against it"
+            + (f"; on {other} of large surfaces the strategies were held against each other" if other else "")
+            + f". {embedded} of {against + other} start embedded. "
+            + ("All answers right." if not failures else "WRONG: " + "; ".join(failures)),
+            "- BVOT counts pairs of bounding volumes that were compared, PCTP pairs of triangles that were passed on to the elementary tests.",
+            "- Where the reference answers fewer intervals, its times and counters are of those alone.",
+            "- Times are medians over repetitions of the mean over the intervals, strategies interleaved in random order; "
+            "counters are means.",
+            "- Unlike `cscd run`, this study makes no pass over the intervals before it takes times, and no strategy forgets what it adapted to: one that "
+            "follows the surface has the clusters that the intervals asked before left it, which lie further apart than those of a simulation.",
+            "- Body and limbs are subdivided above the scene's own resolution (Loop), tubes and boxes built anew.",
+            f"- {built(where)}.", "",
+            f"Command: `{' '.join(raw['command'])}`"]
+    return text
+
+
+def mark_part(record):
+    """The footnote of every mark: which rows lack what, in which steps."""
+    lines = []
+    for subject in record.raw["subjects"]:
+        for step in subject["steps"]:
+            where = f"{subject['study']}, {step['scene']}" + (
+                f", thickness {step['thickness']:g}" if "thickness" in step else f", step {step['step']:g}" if subject["study"] == "step" else "") + (
+                f", {subject['triangles']:,} triangles" if subject["study"] == "size" else "")
+            rows = [f"`{own['name']}` ({text})" for own in step["strategies"] if "ms" in own and (text := lacks(subject, step, own["name"]))]
+            lines += [f"- {where}: {', '.join(rows)}"] if rows else []
+    if not lines:
+        return []
+    return [f"## What {MARK} stands for", "", f"{MARK} The row does not answer everything that a complete row answers, so its time is not for the same work. A "
+            "promise is void on an interval whose start is not embedded: the surface crosses itself there, or with a thickness, something is close.",
+            "", *lines, ""]
+
+
+def summary(record):
+    """The figures that a reader wants first, a line each."""
+    names = record.names("size") or record.names("step") or record.names("contacts") or record.names("thickness")
+    text, parts = [], []
+    for scene in record.scenes("size"):
+        law = record.fit("size", scene, names[0], "total")
+        if law:
+            parts.append(f"{scene} {law['exponent']:.2f}")
+    if parts:
+        text += [f"`{names[0]}`, time against triangles, exponents: {', '.join(parts)}."]
+    ratios = [f"{scene} {record.ratios[(scene, names[0], LONG)]['ratio']:.2f}{marked(record.of('step', scene)[0], (1, LONG), names[0])}" for scene in record.scenes("step")
+              if (scene, names[0], LONG) in record.ratios]
+    if ratios:
+        text += [f"Time at {LONG} frame steps over that at one: {', '.join(ratios)}."]
+    for name in (names[0], names[0] + FIRST):
+        ratios = [f"{scene} {record.contacts[(scene, name, 'median_interval')]['ratio']:.2f}{contacts_mark(record, scene, name)}"
+                  for scene in record.scenes("contacts") if (scene, name, "median_interval") in record.contacts]
+        if ratios:
+            text += [f"`{name}`, the median interval's time with contacts over that without: {', '.join(ratios)}."]
+    return text
+
+
+def page(record, drawn):
+    text = ["# How cost grows", ""]
+    if record.raw["smoke"]:
+        text += ["**A small run: it shows that everything works; its times mean nothing.**", ""]
+    text += summary(record)
+    if any(record.scenes(study) for study in ("size", "step", "contacts", "bones")):
+        lost = losses(record)
+        text += ["", "## Where it loses", ""] + ([f"- {line}" for line in lost] or [NOWHERE])
+    text += [""] + size_part(record, drawn) + step_part(record, drawn) + bones_part(record, drawn) + threads_part(record, drawn)
+    text += contacts_part(record, drawn) + thickness_part(record)
+    text += mark_part(record)
+    text += checked_part(record)
+    return "\n".join(text) + "\n"
