@@ -5,11 +5,13 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/command_line/command.h"
+#include "bench/cli/output/glossary.h"
 #include "bench/cli/scene_file.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/elementary/catalogue.h"
 #include "scenes/base/closest_name.h"
+#include "scenes/base/joined.h"
 #include "scenes/catalog/scene.h"
 #include "scenes/catalog/shapes.h"
 #include "scenes/effects/effect.h"
@@ -36,6 +38,11 @@ json scenes_json() {
   return rows;
 }
 
+// What a row is, in two sentences, where the glossary says it.
+void add_meaning(json& row) {
+  if (const auto means = meaning_of_name(row.at("name").get<std::string>())) row["means"] = *means;
+}
+
 json strategies_json() {
   json rows = json::array();
   for (const Strategy& strategy : strategies()) {
@@ -45,6 +52,7 @@ json strategies_json() {
                     {"needs_rig", strategy.needs == Needs::closed_mesh_with_bones},
                     {"needs_closed_mesh", strategy.needs != Needs::any_mesh}});
     if (!strategy.group.empty()) rows.back()["group"] = strategy.group;
+    add_meaning(rows.back());
   }
   return rows;
 }
@@ -59,6 +67,7 @@ json tests_json() {
     if (test.parameters.tolerance >= 0) rows.back()["tolerance"] = test.parameters.tolerance;
     if (test.parameters.tolerance >= 0) rows.back()["tolerance_is"] = test.tolerance;
     if (test.parameters.steps >= 0) rows.back()["steps"] = test.parameters.steps;
+    add_meaning(rows.back());
   }
   return rows;
 }
@@ -98,6 +107,15 @@ json families_json() {
   return rows;
 }
 
+json words_json() {
+  json rows = json::array();
+  for (const Word& word : words()) {
+    rows.push_back({{"name", word.name}, {"means", word.means}});
+    if (!word.also.empty()) rows.back()["also"] = word.also;
+  }
+  return rows;
+}
+
 constexpr std::string_view kSceneFile = "scene-file";
 constexpr std::size_t kWidth = 110;  // of a line
 
@@ -132,6 +150,9 @@ std::string source_line(const json& row) {
 std::string description_line(const json& row) {
   return text(row["description"]);
 }
+std::string word_line(const json& row) {
+  return first_sentence(text(row["means"]));
+}
 std::string story_line(const json& row) {
   return first_sentence(text(row["story"]));
 }
@@ -146,7 +167,8 @@ constexpr Section kSections[] = {{"scenes", "scene", scenes_json, scene_line},
                                  {"tests", "elementary test", tests_json, source_line},
                                  {"shapes", "shape", described_json<scenes::shapes>, description_line},
                                  {"effects", "effect", described_json<scenes::effects>, description_line},
-                                 {"families", "family of hard queries", families_json, story_line}};
+                                 {"families", "family of hard queries", families_json, story_line},
+                                 {"words", "word", words_json, word_line}};
 
 // A line that ends at a blank before the width, with "..." where it was longer. Counts bytes, so a line with
 // letters of several bytes ends earlier.
@@ -168,8 +190,10 @@ void print_lines(const Section& section, const json& rows) {
 void print_whole(const Section& section, const json& row) {
   const std::string name = text(row["name"]);
   std::printf("%s %s\n", section.one, name.c_str());
+  if (row.contains("means")) std::printf("  %s\n", text(row["means"]).c_str());
   for (const auto& [key, value] : row.items())
-    if (key != "name" && key != "parameters") std::printf("  %s: %s\n", key.c_str(), text(value).c_str());
+    if (key != "name" && key != "parameters" && key != "means")
+      std::printf("  %s: %s\n", key.c_str(), text(value).c_str());
   const auto print_parameters = [&](const auto& all) {
     for (const auto& described : all)
       if (described.name == name) std::printf("%s", parameters_text(described.parameters, 2).c_str());
@@ -188,10 +212,12 @@ json asked_for(const std::string& what) {
     document[section.name] = section.rows();
   }
   if (!document.empty()) return document;
+  const Word* word = word_called(what);  // in any of its forms
   for (const Section& section : kSections)
     for (json& row : section.rows()) {
       names.push_back(text(row["name"]));
-      if (names.back() == what) document[section.name].push_back(std::move(row));
+      const bool is_word = word != nullptr && section.rows == words_json && names.back() == word->name;
+      if (names.back() == what || is_word) document[section.name].push_back(std::move(row));
     }
   const std::vector<std::string_view> known(names.begin(), names.end());
   if (document.empty())
@@ -201,11 +227,13 @@ json asked_for(const std::string& what) {
 }
 
 struct ListOptions {
+  std::vector<std::string> asked;  // the words of one name, such as mega cluster
   std::string what;
   bool json = false, names = false, markdown = false;
 };
 
-void list(const ListOptions& options) {
+void list(ListOptions options) {
+  options.what = joined(options.asked, " ");
   if (options.what == kSceneFile) {
     std::fputs((options.markdown ? scene_file_markdown() : scene_file_text()).c_str(), stdout);
     return;
@@ -236,7 +264,9 @@ void list(const ListOptions& options) {
     print_lines(section, rows);
   }
   if (options.what.empty() && !options.names)
-    std::printf("\nAll about one: cscd list NAME. What a scene file may hold: cscd list scene-file.\n");
+    std::printf(
+        "\nAll about one, or what a word means: cscd list NAME. What a scene file may hold: cscd list "
+        "scene-file.\n");
 }
 
 }  // namespace
@@ -246,14 +276,15 @@ void add_list(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "list",
       "Show the scenes, strategies, elementary tests, shapes, effects and families of hard queries there "
-      "are.\n\n"
+      "are,\nand explain words.\n\n"
       "  cscd list                one line for each\n"
       "  cscd list strategies     one section\n"
       "  cscd list rope           all about one: a scene's story, the parameters of a shape or an effect\n"
+      "  cscd list embedded       what a word means that help, answers or records use\n"
       "  cscd list scene-file     what a scene file may hold");
   command->add_option(
-      "what", options->what,
-      "scenes, strategies, tests, shapes, effects, families, scene-file, or a name; default all "
+      "what", options->asked,
+      "scenes, strategies, tests, shapes, effects, families, words, scene-file, or a name; default all "
       "sections");
   CLI::Option* json_flag = command->add_flag("--json", options->json, "for a machine to read");
   command->add_flag("--names", options->names, "names alone, a line each")->excludes(json_flag);

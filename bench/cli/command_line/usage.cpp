@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/cli/output/glossary.h"
 #include "bench/measure/record/environment.h"
 #include "core/base/error.h"
 #include "core/base/instruction_set.h"
@@ -73,7 +74,18 @@ std::string unknown_option(const CLI::App& command, const std::string& word) {
   return "unknown option " + name + hint(name, names);
 }
 
-std::string unexpected(const CLI::App& command, const std::vector<std::string>& words) {
+// Returns the option by which a command takes its input, where it takes none by position: --scene or nothing.
+std::string input_option(const CLI::App& command) {
+  bool has_scene = false;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_positional()) return "";
+    has_scene = has_scene || option->check_lname("scene");
+  }
+  return has_scene ? "--scene" : "";
+}
+
+std::string unexpected(const Named& named, const std::vector<std::string>& words) {
+  const CLI::App& command = *named.command;
   std::vector<std::string> below;
   for (const CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; }))
     below.push_back(sub->get_name());
@@ -81,6 +93,9 @@ std::string unexpected(const CLI::App& command, const std::vector<std::string>& 
     return "unknown command " + words.front() + hint(words.front(), below);
   for (const std::string& word : words)
     if (word.size() > 1 && word[0] == '-') return unknown_option(command, word);
+  if (const std::string option = input_option(command); !option.empty())
+    return words.front() + ": this command takes its input by an option; write " + named.words + " " +
+           option + " " + words.front();
   return "one argument too many: " + words.front();
 }
 
@@ -134,6 +149,30 @@ std::string fault_of(const std::string& text, Kind kind) {
 
 }  // namespace
 
+std::string HelpFormat::make_footer(const CLI::App* command) const {
+  std::string said = command->get_description();
+  for (const CLI::Option* option : command->get_options()) said += "\n" + option->get_description();
+  for (const CLI::App* below : command->get_subcommands([](const CLI::App*) { return true; })) {
+    const std::string text =
+        below->get_description();  // of which the list of commands has the first paragraph
+    said += "\n" + text.substr(0, text.find("\n\n"));
+  }
+  const std::vector<std::string> found = words_in(said);
+  std::string out = CLI::Formatter::make_footer(command);
+  if (found.empty()) return out;
+  constexpr std::size_t kWidth = 100;
+  std::string line = "Words that `cscd list WORD` explains:";
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const std::string word = found[i] + (i + 1 < found.size() ? "," : ".");
+    if (line.size() + 1 + word.size() > kWidth) {
+      out += line + "\n";
+      line = " ";
+    }
+    line += " " + word;
+  }
+  return out + line + "\n";
+}
+
 void require_plain_numbers(CLI::App& program) {
   for (CLI::Option* option : program.get_options())
     if (const Kind kind = kind_of(*option); kind != Kind::none)
@@ -148,7 +187,7 @@ std::string usage_error(const CLI::App& program, const CLI::ParseError& error) {
   std::erase(unknown, "");
   const bool about_presence = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
                               dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-  std::string text = about_presence && !unknown.empty() ? unexpected(*named.command, unknown) : error.what();
+  std::string text = about_presence && !unknown.empty() ? unexpected(named, unknown) : error.what();
   for (char& c : text)
     if (c == '\n') c = ' ';
   return text + "; see " + named.words + " --help";

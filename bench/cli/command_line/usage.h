@@ -14,7 +14,8 @@ std::string version_number();
 std::string version_text();
 
 // As CLI11's own, but a command's help begins with the first paragraph of its description and the usage; the
-// rest of the description follows. The list of commands has the first paragraphs alone.
+// rest of the description follows. The list of commands has the first paragraphs alone, and the end names the
+// words that `cscd list` explains.
 class HelpFormat : public CLI::Formatter {
  public:
   std::string make_description(const CLI::App* command) const override {
@@ -27,6 +28,8 @@ class HelpFormat : public CLI::Formatter {
     return CLI::Formatter::make_usage(command, std::move(name)) +
            (rest == std::string::npos ? "" : text.substr(rest + 1) + "\n");
   }
+  // Names the words of the help that the glossary explains.
+  std::string make_footer(const CLI::App* command) const override;
   std::string make_subcommand(const CLI::App* command) const override {
     std::string text = command->get_description();
     text.erase(std::min(text.find("\n\n"), text.size()));
