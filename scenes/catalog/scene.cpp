@@ -266,8 +266,12 @@ Scene parse_scene(std::string_view name, const std::string& text, const std::str
     throw InputError(where + ": its patch changes a base, and none is named; add base or remove patch");
   std::vector<std::string_view> known;
   for (const SceneField& field : kFields) known.push_back(field.name);
-  reader.only(known);
+  // First, since what another kind of file holds is no fault of a scene.
+  if (!json.contains("schema"))
+    throw InputError(where +
+                     ": names no schema, so it is no scene file; cscd list scene-file says what one holds");
   if (reader.text("schema") != "cscd.scene/1") throw InputError(where + ": schema must be cscd.scene/1");
+  reader.only(known);
 
   Scene scene;
   scene.name = name;

@@ -58,6 +58,8 @@ TEST(SceneFile, IsRefusedWithThePlaceOfTheMistake) {
   EXPECT_TRUE(says(refusal("{", ""), "small.json: is not JSON"));
   EXPECT_EQ(refusal("cscd.scene/1", "cscd.scene/9"), "small.json: schema must be cscd.scene/1");
   EXPECT_EQ(refusal("\"story\"", "\"tale\""), "small.json: tale is unknown; remove it");
+  EXPECT_EQ(refusal("\"schema\"", "\"kind\""),
+            "small.json: names no schema, so it is no scene file; cscd list scene-file says what one holds");
   EXPECT_EQ(refusal("\"frames\": 6", "\"frames\": 1"),
             "small.json: frames must be a whole number from 2 to 100000000");
   EXPECT_EQ(refusal("\"frames\": 6,", ""), "small.json: frames is missing; add it");

@@ -24,9 +24,21 @@ FRAME_RANGE = "%d:%d" % FRAMES
 OPTIONS = ["--frames", FRAME_RANGE, "--time-every", "2", "--time-contacts", "0", "--verify-every", "4", "--repetitions", "31"]
 
 
+SOURCES = ("CMakeLists.txt", "core", "baselines", "scenes", "bench", "page", "library", "scripts/cmake")  # what a build reads
+
+
+def require_tracked():
+    """Refuses a working tree in which git does not track some of the sources: a comparison would leave them out without a word."""
+    files = git("ls-files", "--others", "--exclude-standard", "--", *SOURCES).splitlines()
+    if files:
+        refuse(f"the working tree holds {len(files)} sources that git does not track, such as {files[0]}, and they would be left out; "
+               "git add them, or move them away")
+
+
 def commit_named(name):
     """The hash of a commit, or of the working tree's tracked files where none is named."""
     if name is None:
+        require_tracked()
         # With the dates of HEAD the same changes give the same commit, so that an interrupted call finds its measurements.
         date = git("show", "-s", "--format=%cI", "HEAD")
         dated = {**os.environ, "GIT_AUTHOR_DATE": date, "GIT_COMMITTER_DATE": date}

@@ -84,6 +84,9 @@ void require_model_file(const fs::path& path) {
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) throw InputError(name + ": no such file; check the name");
   if (!fs::is_regular_file(status)) throw InputError(name + ": is not a regular file; give a model file");
+  if (access(path.c_str(), R_OK) != 0)
+    throw InputError(name + ": cannot be read (" + std::strerror(errno) +
+                     "); ask its owner for the right to read it");
   const std::uintmax_t bytes = fs::file_size(path, error);
   if (error || bytes == 0) throw InputError(name + ": is empty; export it again");
   if (bytes > kMostModelBytes)

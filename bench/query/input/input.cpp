@@ -9,6 +9,7 @@
 #include "bench/cli/output/progress.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/strategies/strategy_row.h"
+#include "bench/query/input/own_output.h"
 #include "core/base/error.h"
 #include "core/base/number_text.h"
 #include "scenes/catalog/scene_cache.h"
@@ -85,6 +86,7 @@ bool is_model_file(const std::string& name) {
 }
 
 Input open_input(const std::string& name, const ModelOptions& options) {
+  if (const std::string why = why_own_output(name); !why.empty()) throw InputError(name + ": " + why);
   const bool model = is_model_file(name);
   if (!model && options.true_motion)
     throw InputError(
