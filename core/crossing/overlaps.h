@@ -25,9 +25,10 @@ struct CrossingDepth {
 
 // What crossing curves cut off one sheet: vertices that lie on the other side of the other sheet.
 //
-// An *image* of a curve is its course on one of its two sheets: number 2 c + s is that of curve c on sheet s.
-// Each vertex belongs to the image that is nearest along edges. Its depth is the distance to what the same
-// curve cuts off the other sheet: to all triangles that have a vertex there, or that the curve runs through.
+// A curve lies on the two sheets that cross in it. Its course on one of them is an *image* of the curve:
+// image 2 c + s is that of curve c on sheet s, which is 0 or 1. Each vertex belongs to the image that is
+// nearest along edges. Its depth is the distance to what the same curve cuts off the other sheet: to all
+// triangles that have a vertex there, or that the curve runs through.
 struct CrossingRegion {
   std::int32_t own = 0, other = 0;  // the components of this sheet and of the other
   // On which side of the curves the region lies. Behind the faces of the other sheet, inside a closed body;

@@ -97,8 +97,8 @@ void expect_verified(bool embedded, const Verifier& verifier, std::size_t interv
 
 // Times on all timed intervals what it takes to know whether the start is embedded: the test of the start,
 // for the rows that rely on it, and for the row that answers from starts that are not known, what seeing the
-// start adds to its query. Both have a pass of their own, as they would otherwise drive from the caches what
-// a strategy keeps.
+// start adds to its query. Both are timed in a pass of their own after all queries. In between, their data
+// would push that of the strategies out of the caches, and the next query would be slower for that.
 void time_starts(Input& input, std::span<const Contestant> contestants, std::span<const std::size_t> timed,
                  const Verifier& verifier, const WarmUp& warm_up, EmbeddingTest& test, std::size_t repetition,
                  std::vector<StrategyRecord>& records) {

@@ -29,8 +29,10 @@ class Certificates {
   Certificates(const TriangleMesh& mesh, const PatchTree& tree, const Covers& covers,
                std::vector<CappedClusters> capped = {});
 
-  // With `all`, capped clusters certify from the next interval on, which takes that they were given. Without,
-  // signs alone do. At first, capped clusters do where they were given.
+  // Chooses what certifies triangles from the next interval on. With `all`, that is the contour test of
+  // capped clusters, which keeps all contacts; the capped clusters must have been given to the constructor.
+  // Without `all`, signs alone certify. Certificates begin with the contour test where capped clusters were
+  // given.
   void use_contour_test(bool all);
   // Looks from the first `count` covers alone, at least one, from the next interval on.
   void use_covers(std::size_t count);
@@ -45,8 +47,9 @@ class Certificates {
   void resize_first_cover();
   // Takes over the clusters of patches [first, last) of the tree, and forgets what was certified of them.
   void relabel(std::size_t first, std::size_t last);
-  // Takes over that a cluster of the first cover has other triangles or another observer
-  // (CappedClusters::set_cluster).
+  // Rebuilds the capped cluster of one cluster of the first cover, after the triangles or the observer of
+  // that cluster have changed (CappedClusters::set_cluster). Does nothing where no capped clusters were
+  // given.
   void set_cluster(std::size_t cluster, CapBuilder& builder, const TriangleMesh& mesh,
                    std::span<const TriangleId> triangles, std::span<const TriangleId> targets,
                    std::span<const Vec3> positions);
