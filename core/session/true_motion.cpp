@@ -17,8 +17,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Grows a length by more than a few roundings shorten it.
 constexpr double kGrown = 1 + 32 * kUnitRoundoff;
 
-// Parts are searched at more than their distance by this factor, so that the next ones need no more; and
-// after how many that is tried again.
+// A part of an interval is searched at kRoom times the distance that it needs. If its end is clear at that
+// larger distance, the next part begins with a clear start, which is quicker to ask about. If it is not,
+// kWaits parts pass before the larger distance is tried again. kWaitsForSigns parts pass where signs left
+// more pairs of triangles than boxes do.
 constexpr double kRoom = 1.25;
 constexpr int kWaits = 4, kWaitsForSigns = 256;
 // A bound for all vertices at once that is too large by less than this is looked at vertex by vertex.

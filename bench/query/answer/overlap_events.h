@@ -35,8 +35,10 @@ struct OverlapEvent {
 std::vector<std::size_t> deepest_first(std::span<const OverlapEvent> events);
 
 // Follows overlaps from interval to interval. An overlap continues the event with whose regions it shares
-// most vertices; or else pairs of triangles; or else the event between the same two places that nothing
-// continues. Overlaps of which most pairs of triangles cross at rest, or are ignored, are no events.
+// most vertices. An overlap that shares no vertex with any continues the event with which it shares most
+// crossing pairs of triangles. If it shares none of these either, it continues an event between the same two
+// places that no other overlap continues. Overlaps of which most pairs of triangles cross at rest, or are
+// ignored, are no events.
 class OverlapEvents {
  public:
   OverlapEvents(const Input& input, const SurfaceNames& names);  // both must outlive it
