@@ -18,6 +18,7 @@
 #include "bench/compare/statistics.h"
 #include "bench/compare/times.h"
 #include "bench/measure/record/record.h"
+#include "bench/measure/record/shortfall.h"
 #include "bench/query/view/html.h"
 #include "bench/query/view_page.h"
 #include "bench/tables/claims.h"
@@ -74,6 +75,36 @@ json accuracy_points(const json& record) {
   return points;
 }
 
+// The guarantee of a row of a subject of `cscd scale`.
+std::string guarantee_of(const json& subject, const json& row) {
+  for (const json& strategy : subject.at("strategies"))
+    if (strategy.at("name") == row.at("name")) return strategy.at("guarantee");
+  return "";
+}
+
+// Whether a row answers less than a complete row in a step of `cscd scale`. The record says it. Of an older
+// one it follows from the contacts that complete rows count in as many intervals, and from starts from which
+// the row promises nothing (scripts/lib/scale_record.py has the same rule).
+bool answers_less(const json& subject, const json& step, const json& row) {
+  constexpr std::string_view kComplete = "complete", kFirst = " --first";
+  const std::string guarantee = guarantee_of(subject, row);
+  if (row.contains("shortfall") || guarantee == kComplete) return row.contains("shortfall");
+  const std::size_t starts = step.at("starts").size(),
+                    good = step.value("clear", step.at("embedded").get<std::size_t>());
+  if (needs_embedded_start(guarantee) && good < starts) return true;
+  if (row.at("name").get<std::string>().ends_with(kFirst)) return false;  // is asked for no later contact
+  const double found = row.at("counts").value("contacts", 0.0);           // the mean
+  bool is_judged = false, is_less = false;
+  for (const json& other : step.at("strategies")) {
+    if (guarantee_of(subject, other) != kComplete || other.at("name").get<std::string>().ends_with(kFirst) ||
+        other.at("intervals") != row.at("intervals"))
+      continue;
+    is_judged = true;
+    is_less = is_less || found < other.at("counts").value("contacts", 0.0);
+  }
+  return is_judged ? is_less : step.at("colliding") > 0;
+}
+
 // How cost grows, from a record of `cscd scale`: for each study, scene and strategy the milliseconds of a
 // query at each size, and the exponent of the power law through them where one was fitted. A size is a number
 // of triangles, of bones or of threads, or a length of step.
@@ -94,7 +125,8 @@ json growth_points(const json& record) {
                           {"scene", subject.at("scene")},
                           {"strategy", strategy.at("name")},
                           {"size", size},
-                          {"ms", strategy.at("ms").at("total")}});
+                          {"ms", strategy.at("ms").at("total")},
+                          {"marked", answers_less(subject, step, strategy)}});
       }
   }
   json fits = json::array();

@@ -54,6 +54,30 @@ TEST_F(ReportPage, TakesRecordsOfOtherStudies) {
   EXPECT_EQ(run("ls site").out, "");
 }
 
+// Also in older records, which do not say it in so many words.
+TEST_F(ReportPage, MarksTimesOfRowsThatAnswerLess) {
+  ASSERT_EQ(
+      run("cscd scale --smoke --study thickness --scene small --strategy base,drvbc_fast --json s.json; "
+          "grep -v '\"shortfall\"' s.json > old.json; ! cmp -s s.json old.json")
+          .status,
+      0);
+  for (const std::string record : {"s.json", "old.json"}) {
+    ASSERT_EQ(run("cscd report small.json " + record + " --force -o site").status, 0);
+    const std::string page = text("site/index.html"), begin = "id=\"header\">";
+    const std::size_t from = page.find(begin) + begin.size();
+    const auto document = nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+    std::size_t marked = 0;
+    for (const auto& point : document["growth"]["data"]["points"]) {
+      EXPECT_FALSE(point["strategy"] == "base" && point["marked"]);
+      if (point["strategy"] == "drvbc_fast" && point["size"] == 1) {
+        EXPECT_TRUE(point["marked"]) << "at a mean edge every surface is close to itself";
+      }
+      marked += point["marked"].get<bool>();
+    }
+    EXPECT_GT(marked, 0u) << record;
+  }
+}
+
 TEST_F(ReportPage, ADamagedPageSaysSoInOneLine) {
   ASSERT_EQ(run("cscd report small.json -o site").status, 0);
   std::string page = text("site/index.html");

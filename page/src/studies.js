@@ -57,12 +57,12 @@ export function showGrowth(study) {
   const select = byId("growth-scene");
   const rows = () => points.filter((point) => point.study === name && point.scene === scene);
   const chart = new Chart(byId("growth-chart"), 360, () => {
-    const strategies = distinct(rows().map((point) => point.strategy));
+    const strategies = distinct(rows().map((point) => point.strategy)), mark = (strategy) => (rows().some((point) => point.strategy === strategy && point.marked) ? "*" : "");
     return {
       data: aligned(strategies.map((strategy) => rows().filter((point) => point.strategy === strategy).map((point) => ({ x: point.size, y: point.ms })))),
       series: strategies.map((strategy, i) => {
         const fit = fits.find((one) => one.study === name && one.scene === scene && one.strategy === strategy);
-        return { label: fit ? `${strategy} (grows as the power ${fit.exponent.toFixed(2)})` : strategy, stroke: colourOf(strategy), dash: dashOf(strategy, i), points: { show: true, size: 6 }, ...SPAN };
+        return { label: fit ? `${strategy}${mark(strategy)} (grows as the power ${fit.exponent.toFixed(2)})` : strategy + mark(strategy), stroke: colourOf(strategy), dash: dashOf(strategy, i), points: { show: true, size: 6 }, ...SPAN };
       }),
       x: { label: STUDIES[name], scale: scaleOf(name) },
       y: { label: "ms a query", scale: LOG },
@@ -71,8 +71,10 @@ export function showGrowth(study) {
   const list = () => {
     const strategies = distinct(rows().map((point) => point.strategy)), sizes = distinct(rows().map((point) => point.size));
     const cell = (size, strategy) => rows().find((point) => point.size === size && point.strategy === strategy);
+    const shown = (point) => (point ? short(point.ms) + (point.marked ? "*" : "") : "–");
     byId("growth-list").replaceChildren(tableOf([STUDIES[name], ...strategies.map((strategy) => `${strategy}, ms`)],
-      sizes.map((size) => [size.toLocaleString("en"), ...strategies.map((strategy) => (cell(size, strategy) ? short(cell(size, strategy).ms) : "–"))])));
+      sizes.map((size) => [size.toLocaleString("en"), ...strategies.map((strategy) => shown(cell(size, strategy)))])));
+    byId("growth-note").textContent = rows().some((point) => point.marked) ? "* keeps fewer contacts than a complete row, or promises nothing from some starts" : "";
   };
   const draw = () => {
     chart.draw();
