@@ -235,6 +235,8 @@ TEST(Comparison, ComparesBetweenEqualSettingsOnly) {
   const OtherSetting settings[] = {
       {[](Record& r) { r.elementary = "exact"; }, "--elementary is newton and exact"},
       {[](Record& r) { r.thickness = 0.25; }, "--thickness is left out and 0.25"},
+      {[](Record& r) { r.scene.triangles = 9; },
+       "the surface is 4 vertices, 8 triangles, 1 bones and 4 vertices, 9 triangles, 1 bones"},
       option({"--ignore-neighbours", "1"}, "--ignore-neighbours is left out and 1"),
       option({"--ignore", "hand:arm", "--ignore", "arm:arm"}, "--ignore is left out and arm:arm hand:arm"),
       option({"--exclude-rings=3"}, "--exclude-rings is left out and 3"),

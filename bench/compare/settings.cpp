@@ -52,6 +52,9 @@ Settings settings_of(const Record& record) {
   Settings out = from_command(record.command);
   out[std::string(kElementary)] = record.elementary;
   out[std::string(kPipeline)] = to_string(record.pipeline);
+  out["the surface"] = std::to_string(record.scene.vertices) + " vertices, " +
+                       std::to_string(record.scene.triangles) + " triangles, " +
+                       std::to_string(record.scene.bones) + " bones";
   out.erase(std::string(kThickness));
   if (record.thickness > 0) out[std::string(kThickness)] = exact_text(record.thickness);
   return out;

@@ -8,7 +8,8 @@
 namespace cscd::bench {
 
 // What a run was asked, as far as that changes answers, counters and times by intent: the elementary test,
-// the pipeline, the thickness, what is ignored, and how a model file is read. Maps the name of each setting
+// the pipeline, the thickness, what is ignored, how a model file is read, and how large the surface is, since
+// the digest of a scene is of its positions alone. Maps the name of each setting
 // to its value; a setting that the run left out is missing. An option of `cscd run` that this project does
 // not know counts as a setting.
 using Settings = std::map<std::string, std::string>;
