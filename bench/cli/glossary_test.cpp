@@ -56,8 +56,9 @@ TEST(Glossary, FindsWordsInAnyForm) {
 class GlossaryProgram : public Program {};
 
 TEST_F(GlossaryProgram, ExplainsWhatIsAskedFor) {
-  for (const std::string what : {"BVOT", "pctp", "embedded", "referee", "refit", "guarantee", "mega cluster",
-                                 "mcd", "drvbc_fast_all", "filtered_exact"}) {
+  for (const std::string what :
+       {"BVOT", "pctp", "DRVBC", "16-dop", "embedding", "embedded", "referee", "refit", "guarantee",
+        "mega cluster", "mcd", "drvbc_fast_all", "filtered_exact"}) {
     const Ran ran = run("cscd list " + what);
     EXPECT_EQ(ran.status, 0) << ran.errors;
     const std::size_t from = ran.out.find("\n  "), to = ran.out.find('\n', from + 1);

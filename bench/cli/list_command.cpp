@@ -1,5 +1,6 @@
 #include <CLI/App.hpp>
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -202,6 +203,11 @@ void print_whole(const Section& section, const json& row) {
   if (section.rows == described_json<scenes::effects>) print_parameters(scenes::effects());
 }
 
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 // The sections that were asked for, by their own name or by that of a row; then with that row alone.
 json asked_for(const std::string& what) {
   json document = json::object();
@@ -216,8 +222,9 @@ json asked_for(const std::string& what) {
   for (const Section& section : kSections)
     for (json& row : section.rows()) {
       names.push_back(text(row["name"]));
+      const bool is_named = lower_case(names.back()) == lower_case(what);  // as DRVBC
       const bool is_word = word != nullptr && section.rows == words_json && names.back() == word->name;
-      if (names.back() == what || is_word) document[section.name].push_back(std::move(row));
+      if (is_named || is_word) document[section.name].push_back(std::move(row));
     }
   const std::vector<std::string_view> known(names.begin(), names.end());
   if (document.empty())
