@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "scenes/import/fbx/triangulated_loop.h"
+#include "scenes/polygon/triangulated_loop.h"
 
 namespace cscd::scenes {
 namespace {

@@ -13,7 +13,8 @@ namespace cscd::scenes::fbx {
 struct Mesh {
   std::vector<Vec3> positions;
   std::vector<std::array<std::int32_t, 3>> triangles;
-  std::size_t lines = 0;  // polygons of fewer than three corners, which are left out
+  std::size_t lines = 0;        // polygons of fewer than three corners, which are left out
+  std::size_t overlapping = 0;  // flat polygons that overlap themselves
 };
 
 // Reads a Geometry object and cuts its polygons into triangles. Throws InputError for damage, for polygons

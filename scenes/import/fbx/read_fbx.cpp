@@ -13,6 +13,7 @@
 #include "scenes/import/fbx/morphs.h"
 #include "scenes/import/fbx/objects.h"
 #include "scenes/import/fbx/skin.h"
+#include "scenes/polygon/cut_polygon.h"
 
 namespace cscd::scenes {
 namespace {
@@ -213,6 +214,7 @@ class Builder {
     if (found != meshes_.end()) return found->second;
     const Mesh& mesh = meshes_.emplace(&geometry, read_mesh(geometry, limits_)).first->second;
     lines_ += mesh.lines;
+    overlapping_ += mesh.overlapping;
     return mesh;
   }
 
@@ -301,6 +303,7 @@ class Builder {
       if (count > 0) character_.notes.push_back(std::to_string(count) + " " + what);
     };
     note(lines_, "points and lines left out");
+    note(overlapping_, kOverlapping);
     note(other_surfaces_, "curves, patches and other surfaces that are no polygons left out");
     note(again_, "meshes that several nodes share taken once, as their joints place them");
     note(other_deformers_, "deformers that are neither skins nor blend shapes not applied");
@@ -327,7 +330,7 @@ class Builder {
   std::size_t vertices_ = 0, triangles_ = 0, copied_keys_ = 0;  // counts so far
   LeftOut clip_left_out_;
   SkinLeftOut skin_left_out_;
-  std::size_t lines_ = 0, other_surfaces_ = 0, again_ = 0, empty_clips_ = 0, other_deformers_ = 0;
+  std::size_t lines_ = 0, overlapping_ = 0, other_surfaces_ = 0, again_ = 0, empty_clips_ = 0, other_deformers_ = 0;
 };
 
 }  // namespace

@@ -25,7 +25,7 @@ OUTSIDE = {
     "hdf5": ["scenes/clip"], "H5": ["scenes/clip"], "assimp/": ["scenes/import"], "pugixml": ["scenes/import"],
     "zlib": ["scenes/import/fbx", "bench/cli/output"], "fcl/": ["baselines/fcl"], "embree3/": ["baselines/embree"],
     "embree4/": ["baselines/embree"],
-    "CGAL/": ["baselines/cgal_boxes", "scenes/import", "scenes/import/fbx"],
+    "CGAL/": ["baselines/cgal_boxes", "scenes/polygon"],
     "nlohmann/": ["bench/", "scenes/catalog", "scenes/export", "scenes/import/gltf"],
     "CLI/": ["bench", "bench/"], "valijson/": ["bench/cli/output"],
     "benchmark/": ["bench/measure/kernels"], "openssl/": ["bench/cli/output"],

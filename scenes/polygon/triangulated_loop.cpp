@@ -1,4 +1,4 @@
-#include "scenes/import/fbx/triangulated_loop.h"
+#include "scenes/polygon/triangulated_loop.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
