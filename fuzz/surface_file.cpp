@@ -15,10 +15,17 @@ void target(Bytes bytes) {
     } catch (const InputError&) {
       continue;
     }
-    for (const auto& corners : surface.triangles)
-      for (const std::int32_t corner : corners)
-        if (corner < 0 || static_cast<std::size_t>(corner) >= surface.positions.size())
-          broken("an index is out of range");
+    for (const std::int32_t corner : surface.faces.corners)
+      if (corner < 0 || static_cast<std::size_t>(corner) >= surface.positions.size())
+        broken("an index is out of range");
+    try {
+      for (const auto& triangle : scenes::cut_faces(surface.faces, surface.positions).triangles)
+        for (const std::int32_t corner : triangle)
+          if (corner < 0 || static_cast<std::size_t>(corner) >= surface.positions.size())
+            broken("a corner of a cut polygon is out of range");
+    } catch (const InputError&) {
+      continue;
+    }
   }
 }
 

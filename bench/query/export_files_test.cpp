@@ -58,6 +58,12 @@ TEST_F(ExportFiles, ExactFormatsAreAnsweredAlikeAndSinglePrecisionNearly) {
   }
   EXPECT_EQ(verdicts(answer("exact.0000.obj")), expected);
   EXPECT_EQ(verdicts(answer("exact.0007.ply")), expected);
+  // A folder stands for the one sequence in it.
+  const Ran two = run("cscd query . -- 2>&1");
+  EXPECT_EQ(two.status, 2);
+  EXPECT_NE(two.out.find("is a folder with 4 sequences, such as those of "), std::string::npos) << two.out;
+  ASSERT_EQ(run("mkdir frames && cp exact.*.ply frames").status, 0);
+  EXPECT_EQ(verdicts(answer("frames")), expected);
   const Ran fps = run("cscd query exact.0000.obj --fps 60 --frames 0:1 -- 2>&1");
   EXPECT_NE(fps.out.find("60 frames a second, as asked"), std::string::npos) << fps.out;
   EXPECT_NE(fps.out.find("files, exact.0000.obj to exact.00"), std::string::npos) << fps.out;

@@ -3,7 +3,6 @@
 #include <array>
 #include <charconv>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -189,8 +188,7 @@ class AllVerdicts {
     const std::size_t count = answered() + still_.size();
     if (!apart_.empty()) text += "; all of this apart from ";
     for (const std::string& each : apart_) text += (each == *apart_.begin() ? "" : " and ") + each;
-    return std::filesystem::path(input).filename().string() + ", " + many(count, "clip") + " in all:" + text +
-           ".";
+    return short_name(input) + ", " + many(count, "clip") + " in all:" + text + ".";
   }
   // The clips that are close are counted where there is a thickness.
   json as_json(const std::string& input, bool is_thick) const {

@@ -231,7 +231,7 @@ std::string view_page(const ViewRequest& options) {
                      " strategies; name fewer");
   const bool model = is_model_file(options.input);
   json header = {{"schema", "cscd.view/1"},
-                 {"name", std::filesystem::path(options.input).filename().string()},
+                 {"name", short_name(options.input)},
                  {"kind", model                           ? "model"
                           : is_point_cache(options.input) ? "cache"
                                                           : "scene"},
@@ -291,7 +291,7 @@ void add_view(CLI::App& app) {
                     "replace the output even if it is no page that cscd view wrote");
   command->callback([options] {
     if (options->output.empty())
-      options->output = std::filesystem::path(options->input).stem().string() + ".html";
+      options->output = std::filesystem::path(short_name(options->input)).stem().string() + ".html";
     view(*options);
   });
 }

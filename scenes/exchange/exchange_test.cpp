@@ -8,73 +8,13 @@
 #include "scenes/base/test_says.h"
 #include "scenes/exchange/mesh_cache.h"
 #include "scenes/exchange/number_bytes.h"
-#include "scenes/exchange/surface_file.h"
+#include "scenes/exchange/test_surface.h"
 #include "scenes/exchange/usd_file.h"
 #include "scenes/exchange/vtk_file.h"
 
 // Files of other programs, as those programs write them and as this one does.
 namespace cscd::scenes {
 namespace {
-
-using Corners = std::array<std::int32_t, 3>;
-
-const std::vector<Vec3> kPositions = {{0, 0.1, -1e-300}, {1.0 / 3, 2e10, 3}, {-1, -2, -3.5}, {7, 8, 9}};
-const std::vector<Triangle> kTriangles = {{VertexId{0}, VertexId{1}, VertexId{2}},
-                                          {VertexId{0}, VertexId{2}, VertexId{3}}};
-
-TEST(SurfaceFiles, GiveEveryPositionBackBitForBit) {
-  for (const SurfaceFile& read :
-       {read_obj(to_obj(kPositions, kTriangles)), read_ply(to_ply(kPositions, kTriangles))}) {
-    EXPECT_EQ(read.positions, kPositions);
-    EXPECT_EQ(read.triangles, (std::vector<Corners>{{0, 1, 2}, {0, 2, 3}}));
-  }
-}
-
-TEST(SurfaceFiles, ObjIsReadAsOthersWriteIt) {
-  const SurfaceFile read = read_obj(
-      "# a comment\r\nmtllib x.mtl\no part\nv 0 0 0 1.0\nv 1 0 0\r\nv 1 1 0\nvn 0 0 1\nvt 0 0\nv 0 1 0\n\n"
-      "usemtl m\ns 1\nf 1/1/1 2//1 3/1 4\nf -4 -3 -2\nl 1 2");
-  EXPECT_EQ(read.positions.size(), 4u);
-  EXPECT_EQ(read.triangles, (std::vector<Corners>{{0, 1, 2}, {0, 2, 3}, {0, 1, 2}}));
-  EXPECT_TRUE(
-      says(test::refusal([] { read_obj("v 0 0 0\nf 1 2\n"); }), "line 2: a face has fewer than three"));
-  EXPECT_TRUE(says(test::refusal([] { read_obj("v 0 0 x\n"); }), "line 1: 'x' is no coordinate"));
-  EXPECT_TRUE(
-      says(test::refusal([] { read_obj("v 0 0 0\nv 0 0 nan\n"); }), "line 2: a coordinate is not finite"));
-  EXPECT_TRUE(says(test::refusal([] { read_obj("v 0 0 0\nf -2 1 1\n"); }), "line 2: '-2' names no vertex"));
-  EXPECT_TRUE(says(test::refusal([] { read_obj("v 0 0 0\nf 1 1 1\nf 1 3 2\nv 1 0 0\n"); }),
-                   "line 3: a face names vertex 3, and the file has 2 vertices"));
-  EXPECT_TRUE(says(test::refusal([] { read_obj(""); }), "no vertices"));
-}
-
-TEST(SurfaceFiles, PlyIsReadInAllThreeFormats) {
-  const std::string head =
-      "element vertex 3\nproperty float x\nproperty uchar red\nproperty float y\nproperty float z\n"
-      "element face 1\nproperty list uchar short vertex_index\nend_header\n";
-  const std::string ascii = "ply\nformat ascii 1.0\n" + head + "0 255 0 0\n1 0 0.5 0\n0 0 1 -2\n3 0 1 2\n";
-  std::string binary[2];
-  for (const bool big : {false, true}) {
-    std::string& out = binary[big];
-    out = std::string("ply\nformat binary_") + (big ? "big" : "little") + "_endian 1.0\n" + head;
-    const auto number = [&](float x) { append_bits(std::bit_cast<std::uint32_t>(x), 4, big, out); };
-    for (const auto& x :
-         {std::array{0.F, 0.F, 0.F}, std::array{1.F, 0.5F, 0.F}, std::array{0.F, 1.F, -2.F}}) {
-      number(x[0]);
-      out += '\7';
-      number(x[1]);
-      number(x[2]);
-    }
-    out += '\3';
-    for (const unsigned v : {0U, 1U, 2U}) append_bits(v, 2, big, out);
-  }
-  for (const std::string& file : {ascii, binary[0], binary[1]}) {
-    const SurfaceFile read = read_ply(file);
-    EXPECT_EQ(read.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0.5, 0}, {0, 1, -2}}));
-    EXPECT_EQ(read.triangles, (std::vector<Corners>{{0, 1, 2}}));
-    for (std::size_t cut = 0; cut + 1 < file.size(); ++cut)
-      EXPECT_NE(test::refusal([&] { read_ply(file.substr(0, cut)); }), "") << "of " << cut << " bytes";
-  }
-}
 
 TEST(MeshCaches, GiveSinglePrecisionBackAndRefuseOtherLengths) {
   for (const MeshCacheFormat format : {MeshCacheFormat::pc2, MeshCacheFormat::mdd}) {

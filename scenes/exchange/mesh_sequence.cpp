@@ -1,12 +1,10 @@
 #include "scenes/exchange/mesh_sequence.h"
 
-#include <algorithm>
-#include <charconv>
 #include <fstream>
-#include <map>
 
 #include "core/base/error.h"
 #include "scenes/exchange/mesh_cache.h"
+#include "scenes/exchange/sequence_files.h"
 #include "scenes/exchange/surface_file.h"
 
 namespace cscd::scenes {
@@ -54,39 +52,43 @@ void require_finite_frame(const std::vector<Vec3>& positions, std::size_t frame)
                        ": a coordinate is not finite; export it again");
 }
 
-// A name cut at its last number: "walk.", "0001", ".obj".
-struct CutName {
-  std::string before, number, after;
-};
+CutFaces faces_of(const fs::path& file, const SurfaceFile& surface, std::span<const Vec3> positions) {
+  const std::string name = file.filename().string();
+  try {
+    CutFaces faces = cut_faces(surface.faces, positions);
+    if (!faces.triangles.empty()) return faces;
+  } catch (const InputError& error) {
+    throw InputError(name + ": " + error.what());
+  }
+  throw InputError(name + ": has no faces; export it with faces");
+}
 
-CutName cut(const fs::path& path) {
-  const std::string stem = path.stem().string();
-  const std::size_t last = stem.find_last_of("0123456789");
-  if (last == std::string::npos) return {stem, "", path.extension().string()};
-  const std::size_t before = stem.find_last_not_of("0123456789", last);
-  const std::size_t first = before == std::string::npos ? 0 : before + 1;
-  return {stem.substr(0, first), stem.substr(first, last + 1 - first),
-          stem.substr(last + 1) + path.extension().string()};
+// What a user should know of a surface and of its frames.
+std::vector<std::string> notes_of(const SurfaceFile& surface, const CutFaces& faces,
+                                  const std::string& frames) {
+  std::vector<std::string> notes = surface.notes;
+  if (surface.points_and_lines > 0)
+    notes.push_back(std::to_string(surface.points_and_lines) + " points and lines left out");
+  if (!faces.note.empty()) notes.push_back(faces.note);
+  if (!frames.empty()) notes.push_back(frames);
+  return notes;
 }
 
 class FileSequence final : public MeshSequence {
  public:
-  explicit FileSequence(const fs::path& path)
-      : files_(files_of_sequence(path)), first_(read_surface(files_[0])) {
-    if (first_.triangles.empty())
-      throw InputError(files_[0].filename().string() + ": has no faces; export it with faces");
-  }
+  explicit FileSequence(const fs::path& path) : FileSequence(files_of_sequence(path)) {}
   std::string format() const override {
     return extension_of(files_[0]) == ".ply" ? "PLY sequence" : "OBJ sequence";
   }
-  std::string note() const override {
-    return "the frames are " + std::to_string(files_.size()) + " files, " +
-           files_.front().filename().string() + " to " + files_.back().filename().string();
+  std::vector<std::string> notes() const override {
+    return notes_of(first_, faces_,
+                    "the frames are " + std::to_string(files_.size()) + " files, " +
+                        files_.front().filename().string() + " to " + files_.back().filename().string());
   }
   std::size_t frame_count() const override { return files_.size(); }
-  double first_frame() const override { return std::stod(cut(files_[0]).number); }
+  double first_frame() const override { return first_frame_; }
   std::size_t vertex_count() const override { return first_.positions.size(); }
-  std::span<const std::array<std::int32_t, 3>> triangles() const override { return first_.triangles; }
+  std::span<const std::array<std::int32_t, 3>> triangles() const override { return faces_.triangles; }
   void read_frame(std::size_t frame, std::vector<Vec3>& positions) override {
     if (frame == 0) {
       positions = first_.positions;
@@ -98,15 +100,23 @@ class FileSequence final : public MeshSequence {
       throw InputError(name + ": has " + std::to_string(surface.positions.size()) +
                        " vertices, and the first file has " + std::to_string(first_.positions.size()) +
                        "; export a surface whose vertices stay the same");
-    if (surface.triangles != first_.triangles)
+    if (surface.faces != first_.faces)
       throw InputError(name +
                        ": has other faces than the first file; export a surface whose faces stay the same");
     positions = std::move(surface.positions);
   }
 
  private:
+  explicit FileSequence(SequenceFiles sequence)
+      : files_(std::move(sequence.files)),
+        first_frame_(sequence.first_frame),
+        first_(read_surface(files_[0])),
+        faces_(faces_of(files_[0], first_, first_.positions)) {}
+
   std::vector<fs::path> files_;
+  double first_frame_;
   SurfaceFile first_;
+  CutFaces faces_;  // as they lie in the first file
 };
 
 class CacheSequence final : public MeshSequence {
@@ -125,18 +135,21 @@ class CacheSequence final : public MeshSequence {
       throw InputError("has " + std::to_string(cache_.vertices()) + " vertices, and " +
                        faces.filename().string() + " has " + std::to_string(surface_.positions.size()) +
                        "; export both from one surface");
-    if (surface_.triangles.empty())
-      throw InputError(faces.filename().string() + ": has no faces; export it with faces");
+    std::vector<Vec3> first;
+    read_frame(0, first);
+    faces_ = faces_of(faces, surface_, first);
   }
   std::string format() const override { return pc2_ ? "PC2 cache" : "MDD cache"; }
-  std::string note() const override {
-    if (pc2_ || cache_.fps()) return {};
-    return "its frames are not evenly spaced in time; they are taken as evenly spaced, 30 a second unless "
-           "--fps says otherwise";
+  std::vector<std::string> notes() const override {
+    return notes_of(surface_, faces_,
+                    pc2_ || cache_.fps()
+                        ? ""
+                        : "its frames are not evenly spaced in time; they are taken as evenly "
+                          "spaced, 30 a second unless --fps says otherwise");
   }
   std::size_t frame_count() const override { return cache_.frames(); }
   std::size_t vertex_count() const override { return cache_.vertices(); }
-  std::span<const std::array<std::int32_t, 3>> triangles() const override { return surface_.triangles; }
+  std::span<const std::array<std::int32_t, 3>> triangles() const override { return faces_.triangles; }
   void read_frame(std::size_t frame, std::vector<Vec3>& positions) override {
     cache_.read_frame(frame, positions);
     require_finite_frame(positions, frame);
@@ -149,50 +162,14 @@ class CacheSequence final : public MeshSequence {
   std::string bytes_;
   MeshCache cache_;
   SurfaceFile surface_;
+  CutFaces faces_;  // as they lie in the first frame
 };
 
 }  // namespace
 
 bool is_mesh_sequence(const fs::path& path) {
-  const std::string extension = extension_of(path);
-  return extension == ".obj" || extension == ".ply" || extension == ".pc2" || extension == ".mdd";
-}
-
-std::vector<fs::path> files_of_sequence(const fs::path& path) {
-  const CutName wanted = cut(path);
-  if (wanted.number.empty())
-    throw InputError(
-        "is one pose, and nothing moves: its name has no number; name one file of a sequence, as in "
-        "walk.0001.obj");
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  std::map<std::uint64_t, fs::path> files;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const CutName name = cut(entry.path());
-    if (name.before != wanted.before || name.after != wanted.after || name.number.empty()) continue;
-    std::uint64_t number = 0;
-    const auto [end, wrong] =
-        std::from_chars(name.number.data(), name.number.data() + name.number.size(), number);
-    if (wrong != std::errc{} || end != name.number.data() + name.number.size()) continue;
-    if (!files.try_emplace(number, entry.path()).second)
-      throw InputError("frame " + std::to_string(number) + " is there twice, as " +
-                       files[number].filename().string() + " and " + entry.path().filename().string() +
-                       "; remove one");
-  }
-  if (error) throw InputError("its folder cannot be read; check the permissions");
-  if (files.size() < 2)
-    throw InputError(
-        "is the only file of its sequence, and nothing moves; put the other frames beside it, as in "
-        "walk.0001.obj, walk.0002.obj");
-  std::vector<fs::path> out;
-  for (const auto& [number, file] : files) {
-    const std::uint64_t expected = files.begin()->first + out.size();
-    if (number != expected)
-      throw InputError("frame " + std::to_string(expected) + " of its sequence is missing before " +
-                       file.filename().string() + "; export it again");
-    out.push_back(file);
-  }
-  return out;
+  return is_mesh_sequence_file(path) || fs::is_directory(path, error);
 }
 
 std::unique_ptr<MeshSequence> open_mesh_sequence(const fs::path& path) {

@@ -16,21 +16,16 @@
 // beside an OBJ file.
 namespace cscd::scenes {
 
-// Whether a file's extension is one of a moving surface without bones: .obj, .ply, .pc2, .mdd.
+// Whether a path is a folder, or a file whose extension is one of a moving surface without bones.
 bool is_mesh_sequence(const std::filesystem::path& path);
-
-// The files of one sequence. Their names differ in the last number before the extension alone, as
-// walk.0001.obj and walk.0002.obj do. Returns them in the order of their numbers. Throws InputError if `path`
-// has no number, if it is the only file, or if a number is missing in between.
-std::vector<std::filesystem::path> files_of_sequence(const std::filesystem::path& path);
 
 class MeshSequence {
  public:
   virtual ~MeshSequence() = default;
   virtual std::string format() const = 0;
-  // What a user should know of the frames: which files they are, or that a cache's times give no rate. May be
-  // empty.
-  virtual std::string note() const = 0;
+  // What a user should know: which files the frames are, that a cache's times give no rate, and what the file
+  // of the faces holds that is left out or overlaps itself.
+  virtual std::vector<std::string> notes() const = 0;
   virtual std::size_t frame_count() const = 0;
   // The number of the first frame: that in the name of the first file, or what a cache says.
   virtual double first_frame() const = 0;
@@ -38,6 +33,7 @@ class MeshSequence {
   virtual std::optional<double> fps() const { return std::nullopt; }
   virtual std::size_t vertex_count() const = 0;
   // Corners of all triangles, in the order of the file of the first frame; those that repeat a corner too.
+  // Faces of more corners are cut as they lie in the first frame.
   virtual std::span<const std::array<std::int32_t, 3>> triangles() const = 0;
   // Throws InputError for a frame that cannot be read or is not of the same surface as frame 0.
   virtual void read_frame(std::size_t frame, std::vector<Vec3>& positions) = 0;

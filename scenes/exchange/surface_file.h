@@ -13,9 +13,26 @@
 // Surfaces of one moment as Wavefront OBJ and Stanford PLY files, which programs exchange one file a frame.
 namespace cscd::scenes {
 
+// As many vertices, and as many triangles, as a mesh may have.
+inline constexpr std::size_t kMostInSurfaceFile = std::size_t{1} << 28;
+
+// Faces of three corners or more, in the order of the file.
+struct Polygons {
+  std::vector<std::int32_t> corners;  // vertices of all polygons, one polygon after another
+  std::vector<std::size_t> ends;      // [polygons]: where the corners of each end
+  std::size_t size() const { return ends.size(); }
+  std::span<const std::int32_t> operator[](std::size_t polygon) const {
+    const std::size_t first = polygon == 0 ? 0 : ends[polygon - 1];
+    return std::span(corners).subspan(first, ends[polygon] - first);
+  }
+  bool operator==(const Polygons&) const = default;
+};
+
 struct SurfaceFile {
-  std::vector<Vec3> positions;                         // [vertices], in the order of the file
-  std::vector<std::array<std::int32_t, 3>> triangles;  // polygons are cut into fans; indices are in range
+  std::vector<Vec3> positions;       // [vertices], in the order of the file
+  Polygons faces;                    // indices are in range
+  std::size_t points_and_lines = 0;  // that are left out
+  std::vector<std::string> notes{};  // on what else is left out
 };
 
 // Read a file's text. An OBJ file counts as one surface, whatever objects and groups it names; only its
@@ -23,6 +40,15 @@ struct SurfaceFile {
 // that names the line or the element that cannot be read.
 SurfaceFile read_obj(std::string_view text);
 SurfaceFile read_ply(std::string_view bytes);
+// Throws InputError for a surface that is empty, too large, or has a face of vertices that do not exist.
+void require_sound(const SurfaceFile& surface);
+
+struct CutFaces {
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  std::string note;  // on faces that overlap themselves; may be empty
+};
+// Cuts faces into triangles, as they lie at these positions. Throws InputError for a face that cannot be cut.
+CutFaces cut_faces(const Polygons& faces, std::span<const Vec3> positions);
 
 // Write a surface so that every position can be read back bit for bit: an OBJ file with 17 digits, a PLY file
 // in binary doubles, the lowest byte first. A PLY file may have a number and a colour for each vertex, as the

@@ -10,6 +10,7 @@
 #include "scenes/character/source_map.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/exchange/mesh_sequence.h"
+#include "scenes/exchange/sequence_files.h"
 #include "scenes/import/clip_frames.h"
 #include "scenes/import/frame_rate.h"
 #include "scenes/import/surface.h"
@@ -228,7 +229,8 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
                              const CharacterLimits& limits, const std::filesystem::path& cache,
                              const std::filesystem::path& sources) {
   require_simple(options);
-  const std::unique_ptr<MeshSequence> sequence = open_mesh_sequence(model);
+  const std::filesystem::path file = sequence_file(model);
+  const std::unique_ptr<MeshSequence> sequence = open_mesh_sequence(file);
   const std::size_t frames = sequence->frame_count();
   if (frames < 2) throw InputError("holds one frame, and nothing moves; export more");
   const Surface surface = surface_of(*sequence);
@@ -247,14 +249,14 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
   report.fps_from = options.fps ? kAsked : sequence->fps() ? kStated : kAssumed;
   report.clips.push_back(
       {"", 0, static_cast<double>(frames - 1) / report.fps, 0, frames, 0, sequence->first_frame()});
-  report.parts.push_back({model.stem().string(), "the surface", -1, -1});
+  report.parts.push_back({file.stem().string(), "the surface", -1, -1});
   report.chosen_clip = options.survey ? -1 : 0;
   report.collapsed_triangles = surface.collapsed;
   report.components = static_cast<std::size_t>(mesh.component_count());
   for (std::size_t c = 0; c < report.components; ++c) report.chosen_components.push_back(c);
   if (options.survey) report.component_bones.assign(report.components, 0);
   report.chosen_triangles = surface.triangles.size();
-  if (const std::string note = sequence->note(); !note.empty()) report.notes.push_back(note);
+  report.notes = sequence->notes();
   write_source_map(surface.sources, sources);
 
   PointCacheWriter writer(cache, {surface.triangles, surface.vertex.size(), {}, false}, false);

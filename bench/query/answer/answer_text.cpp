@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <vector>
 
 #include "bench/query/input/thickness.h"
@@ -69,7 +68,7 @@ std::string ignored_text(const Input& input, const AnswerSummary& s) {
 
 // "horse.glb, clip 'Walk' (14th of 14 clips), component 2 of 5 alone": what exactly a verdict is about.
 std::string subject_of(const Input& input) {
-  const std::string name = std::filesystem::path(input.name).filename().string();
+  const std::string name = short_name(input.name);
   if (!input.import) return name;
   const scenes::ImportReport& report = *input.import;
   std::string rest;

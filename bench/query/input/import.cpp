@@ -83,6 +83,7 @@ void require_model_file(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) throw InputError(name + ": no such file; check the name");
+  if (fs::is_directory(status)) return;  // of a sequence of frames
   if (!fs::is_regular_file(status)) throw InputError(name + ": is not a regular file; give a model file");
   if (access(path.c_str(), R_OK) != 0)
     throw InputError(name + ": cannot be read (" + std::strerror(errno) +

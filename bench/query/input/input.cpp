@@ -78,6 +78,14 @@ bool is_point_cache(const std::filesystem::path& path) {
   return path.extension() == ".h5" || path.extension() == ".hdf5";
 }
 
+std::string short_name(const std::string& name) {
+  std::filesystem::path path = std::filesystem::path(name).lexically_normal();
+  std::error_code ignored;
+  if (path == "." || path == ".." || path == "../" || path == "./")
+    path = std::filesystem::absolute(path, ignored).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
 bool is_model_file(const std::string& name) {
   const std::filesystem::path path(name);
   std::error_code ignored;

@@ -92,6 +92,8 @@ void say_what_was_read(const Input& input, std::FILE* to);
 // Is it the path of a file that has to be imported, rather than a point cache or the name of a scene?
 bool is_model_file(const std::string& name_or_path);
 bool is_point_cache(const std::filesystem::path& path);
+// The last part of a path, by which sentences name an input; of "." and "frames/" too.
+std::string short_name(const std::string& name_or_path);
 
 // Half-open range of intervals.
 struct IntervalRange {

@@ -1,5 +1,6 @@
 #include "bench/query/input/input.h"
 
+#include <filesystem>
 #include <gtest/gtest.h>
 #include <stdexcept>
 #include <string>
@@ -19,6 +20,14 @@ TEST(NameInput, LetsFaultsOfAnInputBeginWithItsName) {
   EXPECT_EQ(said("no frame moves it"), "walk.fbx: no frame moves it");
   EXPECT_EQ(said("cannot read walk.fbx"), "cannot read walk.fbx");
   EXPECT_THROW(name_input("walk.fbx", [] { throw std::logic_error("a fault of ours"); }), std::logic_error);
+}
+
+TEST(ShortName, IsTheLastPartOfAPath) {
+  for (const char* name : {"walk", "a/walk", "./walk", "walk/", "a/walk//", "a/b/../walk/."})
+    EXPECT_EQ(short_name(name), "walk") << name;
+  EXPECT_EQ(short_name("a/walk.fbx"), "walk.fbx");
+  EXPECT_EQ(short_name("."), std::filesystem::current_path().filename().string());
+  EXPECT_EQ(short_name("./"), short_name("."));
 }
 
 }  // namespace
