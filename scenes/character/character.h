@@ -233,7 +233,8 @@ struct Character {
   std::string format;
   std::string up;                   // the axis that points up (scenes/clip/up_axis.h); empty if nothing says
   double centimetres_per_unit = 0;  // 0 where the file does not say
-  std::vector<std::string> notes;   // messages about what was left out of the file
+  std::optional<double> frames_per_second{};  // where the file states it as such; else see frame_rate.h
+  std::vector<std::string> notes;             // messages about what was left out of the file
 };
 
 // Upper bounds on what a model file may hold.

@@ -67,6 +67,7 @@ std::optional<double> spacing_of(const Animation& animation) {
 
 FrameRate frame_rate(const Character& character, std::optional<double> asked) {
   if (asked) return {*asked, kAsked};
+  if (character.frames_per_second) return {*character.frames_per_second, kStated};
   for (const Animation& animation : character.animations)
     if (animation.ticks_per_second >= kLeastStated && animation.ticks_per_second <= kMost)
       return {animation.ticks_per_second, kStated};

@@ -99,8 +99,12 @@ TEST(FrameRate, OfAnFbxFileIsItsTimeMode) {
   EXPECT_EQ(rate(10, 24).fps, 25);
   EXPECT_EQ(rate(14, 12.5).fps, 12.5);
   EXPECT_EQ(rate(15, -1).fps, 96);
+  EXPECT_EQ(rate(12, -1).fps, 1000);
+  EXPECT_EQ(rate(12, -1).from, kStated);
+  EXPECT_EQ(rate(14, 480).fps, 480);
+  EXPECT_EQ(rate(14, 2).fps, 2);
   EXPECT_DOUBLE_EQ(rate(17, -1).fps, 60000.0 / 1001);
-  for (const auto& [mode, custom] : {std::pair(0, 24.0), {12, 24}, {14, -1}, {14, 1e9}, {99, 24}, {-1, 24}}) {
+  for (const auto& [mode, custom] : {std::pair(0, 24.0), {14, -1}, {14, 1e9}, {99, 24}, {-1, 24}}) {
     EXPECT_EQ(rate(mode, custom).fps, kAssumedFps) << mode;
     EXPECT_EQ(rate(mode, custom).from, kAssumed);
   }

@@ -134,7 +134,7 @@ class ClipReader {
       weight = number(*connection.source, "d|Weight", weight);
       for (const Connection& inner : objects_.into(*connection.source)) {
         if (inner.source->type != "AnimationCurve") continue;
-        Curve curve = read_keys(*inner.source).curve;
+        Curve curve = read_keys(*inner.source, told("layer", layer) + ", its weight").curve;
         if (!curve.empty()) return curve;
       }
     }
@@ -148,12 +148,13 @@ class ClipReader {
       const double rest = number(target, property, 0);
       Layered<1>& driven = clip_.shapes[{&target, std::string(property)}];
       if (driven.empty()) driven.base.rest = {rest};
-      put_layer(driven, read_components<1>(node, {name}, {rest}), false, rule);
+      const std::string of = told("blend shape", target) + ", " + std::string(property);
+      put_layer(driven, read_components<1>(node, {name}, {rest}, of), false, rule);
       return;
     }
     if (target.type != "Model") return;
     if (std::find(kStill.begin(), kStill.end(), property) != kStill.end()) {
-      if (moves(node))
+      if (moves(node, told("node", target) + ", " + std::string(property)))
         throw InputError(told("node", target) + ": clip '" + clip_.name + "' animates its " +
                          std::string(property) + "; bake the transforms on export");
       return;
@@ -177,7 +178,8 @@ class ClipReader {
   void read_motion(const Object& node, const Object& model, std::string_view property, const Vec3& otherwise,
                    Layered<3> Motion::*part, bool as_maps, const LayerRule& rule) {
     const Vec3 rest = vector(model, property, otherwise);
-    Components<3> values = read_components<3>(node, {"d|X", "d|Y", "d|Z"}, {rest.x(), rest.y(), rest.z()});
+    Components<3> values = read_components<3>(node, {"d|X", "d|Y", "d|Z"}, {rest.x(), rest.y(), rest.z()},
+                                              told("node", model) + ", " + std::string(property));
     Layered<3>& below = clip_.models[&model].*part;
     if (below.empty()) below.base.rest = {rest.x(), rest.y(), rest.z()};
     const bool turns = part == &Motion::turns;
@@ -226,17 +228,18 @@ class ClipReader {
   }
 
   // Reads the curves of a curve node. A component without a curve has the value that the curve node itself
-  // gives, or else the value of the property.
+  // gives, or else the value of the property. `of` names the property in errors.
   template <std::size_t Width>
   Components<Width> read_components(const Object& node, const std::array<std::string_view, Width>& names,
-                                    const std::array<double, Width>& otherwise) {
+                                    const std::array<double, Width>& otherwise, const std::string& of) {
     Components<Width> components;
     for (std::size_t k = 0; k < Width; ++k) components.rest[k] = number(node, names[k], otherwise[k]);
     for (const Connection& connection : objects_.into(node)) {
       if (connection.source->type != "AnimationCurve") continue;
       for (std::size_t k = 0; k < Width; ++k)
         if (connection.property == names[k]) {
-          components.axis[k] = read_keys(*connection.source).curve;
+          components.axis[k] =
+              read_keys(*connection.source, of + " (" + std::string(names[k].substr(2)) + ")").curve;
           note_range(components.axis[k]);
         }
     }
@@ -245,14 +248,22 @@ class ClipReader {
     return components;
   }
 
-  ReadCurve read_keys(const Object& curve) {
-    ReadCurve read = read_curve(curve, ticks_per_second_, limits_.keys);
+  ReadCurve read_keys(const Object& curve, const std::string& of) {
+    ReadCurve read = named_curve(curve, of);
     keys_ += read.curve.keys.size();
     if (keys_ > limits_.keys)
       throw InputError("has more than " + std::to_string(limits_.keys) + " animation keys; resample it");
     left_out_.keys += read.dropped;
     left_out_.ends += read.unknown_ends;
     return read;
+  }
+
+  ReadCurve named_curve(const Object& curve, const std::string& of) const {
+    try {
+      return read_curve(curve, ticks_per_second_, limits_.keys);
+    } catch (const InputError& error) {
+      throw InputError("clip '" + clip_.name + "', " + of + ": " + error.what());
+    }
   }
 
   // A single key holds at all times, so it does not bear on the clip's length.
@@ -262,10 +273,10 @@ class ClipReader {
     last_ = std::max(last_, curve.keys.back().time);
   }
 
-  bool moves(const Object& node) const {
+  bool moves(const Object& node, const std::string& of) const {
     for (const Connection& connection : objects_.into(node)) {
       if (connection.source->type != "AnimationCurve") continue;
-      const auto keys = read_curve(*connection.source, ticks_per_second_, limits_.keys).curve.keys;
+      const auto keys = named_curve(*connection.source, of).curve.keys;
       for (const Key<double>& key : keys)
         if (key.value != keys.front().value) return true;
     }

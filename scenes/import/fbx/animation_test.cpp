@@ -291,12 +291,33 @@ TEST(FbxAnimation, RefusesWhatItCannotShow) {
   EXPECT_TRUE(says(refusal_of(sliding({0, 1}, {0, 1}, {kLinear})), "do not fit its 2 keys"));
 }
 
-TEST(FbxAnimation, KeysThatAreNoneAreLeftOutWithANote) {
+TEST(FbxAnimation, KeysOutOfOrderAreLeftOutWithANote) {
   const Character character =
-      read(sliding({0, 0.5, 0.5, 1}, {0, std::nan(""), 7, 4}, {kLinear, kLinear, kLinear, kLinear}));
+      read(sliding({0, 0.5, 0.5, 1}, {0, 2, 7, 4}, {kLinear, kLinear, kLinear, kLinear}));
   ASSERT_EQ(character.notes.size(), 1u);
-  EXPECT_EQ(character.notes[0], "1 keys out of order or not finite ignored");
-  EXPECT_NEAR(x_at(character, 0.25), 3.5, 1e-9);
+  EXPECT_EQ(character.notes[0], "1 keys out of order ignored");
+  EXPECT_NEAR(x_at(character, 0.5), 2, 1e-9);
+}
+
+// Mutations: such keys are left out; slopes of straight segments are looked at; those of curved ones are not.
+TEST(FbxAnimation, KeysThatAreNoNumbersAreRefusedByTheirCurve) {
+  const double nan = std::nan("");
+  for (const double value : {nan, HUGE_VAL, -HUGE_VAL})
+    EXPECT_TRUE(says(refusal_of(sliding({0, 0.5, 1}, {0, value, 4}, {kLinear, kLinear, kLinear})),
+                     "clip 'clip', node 'node', Lcl Translation (X): animation curve 61: the value of key 1 "
+                     "(counted from 0) is not a number"));
+  const std::vector<double> slopes = {nan, 0, 0, 0, 0, 0, 0, 0};
+  EXPECT_EQ(refusal_of(sliding({0, 1}, {0, 4}, {kLinear, kLinear}, slopes)), "");
+  EXPECT_TRUE(says(refusal_of(sliding({0, 1}, {0, 4}, {kCubicUser, kLinear}, slopes)),
+                   "animation curve 61: the tangent of key 0 (counted from 0) is not a number"));
+  for (const std::string word : {"1.#QNAN", "-1.#IND00", "nan(ind)", "-nan", "1.#INF", "inf", "1e400"}) {
+    std::string text = sliding({0, 1}, {0, 4}, {kLinear, kLinear}).text();
+    const std::string values = "KeyValueFloat: *2 {\n a: 0,4";
+    text.replace(text.find(values), values.size(), "KeyValueFloat: *2 {\n a: 0," + word);
+    EXPECT_TRUE(says(test::refusal([&] { read_fbx(text, {}); }),
+                     "the value of key 1 (counted from 0) is not a number"))
+        << word;
+  }
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace cscd::scenes::fbx {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";
+constexpr std::string_view kBlanks = " \t\r\n", kLineEnds = "\r\n";
 // The version stands in the first of these bytes.
 constexpr std::size_t kHead = 8192;
 
@@ -48,7 +48,8 @@ class TextParser {
  private:
   [[noreturn]] void refuse(const char* what) const {
     std::size_t line = 1;
-    for (const char c : text_.substr(0, at_)) line += c == '\n';
+    for (std::size_t i = 0; i < at_; ++i)
+      line += text_[i] == '\n' || (text_[i] == '\r' && text_.substr(i + 1, 1) != "\n");
     throw InputError("line " + std::to_string(line) + ": " + what +
                      "; the FBX file is damaged or cut short, export it again");
   }
@@ -61,11 +62,11 @@ class TextParser {
     bool line_ended = false;
     while (!at_end()) {
       if (here() == ';')
-        at_ = std::min(text_.find('\n', at_), text_.size());
+        at_ = std::min(text_.find_first_of(kLineEnds, at_), text_.size());
       else if (kBlanks.find(here()) == kBlanks.npos)
         break;
       else
-        line_ended = text_[at_++] == '\n' || line_ended;
+        line_ended = kLineEnds.find(text_[at_++]) != kLineEnds.npos || line_ended;
     }
     return line_ended;
   }
@@ -83,7 +84,7 @@ class TextParser {
         ++at_;
         return;
       }
-      const std::size_t colon = text_.find_first_of(":\n{}\"", at_);
+      const std::size_t colon = text_.find_first_of(":\r\n{}\"", at_);
       if (colon == text_.npos || text_[colon] != ':') refuse("an element's name has no colon");
       Element& element = elements.emplace_back();
       element.name = text_.substr(at_, colon - at_);
@@ -137,7 +138,7 @@ class TextParser {
 
   // Reads an array. The count after the star is not needed, because the numbers end at the brace.
   void read_array(Element& element) {
-    const std::size_t open = text_.find_first_of("{}\n", at_);
+    const std::size_t open = text_.find_first_of("{}\r\n", at_);
     const std::size_t close = text_.find('}', at_);
     if (open == text_.npos || close == text_.npos || text_[open] != '{') refuse("an array has no braces");
     std::string_view body = text_.substr(open + 1, close - open - 1);

@@ -92,7 +92,8 @@ class CurveReader {
     const std::vector<Attributes> attributes = read_attributes(ticks.size());
     std::vector<RawKey> keys;
     for (std::size_t i = 0; i < ticks.size(); ++i) {
-      if (!std::isfinite(numbers[i]) || (!keys.empty() && ticks[i] <= keys.back().ticks)) {
+      if (!std::isfinite(numbers[i])) refuse_number(i, "value");
+      if (!keys.empty() && ticks[i] <= keys.back().ticks) {
         ++dropped;
         continue;
       }
@@ -103,6 +104,11 @@ class CurveReader {
       key.attributes = attributes[i];
     }
     return keys;
+  }
+
+  [[noreturn]] void refuse_number(std::size_t key, const char* what) const {
+    throw InputError(where_ + ": the " + what + " of key " + std::to_string(key) +
+                     " (counted from 0) is not a number; repair the curve and export it again");
   }
 
   // Reads the attributes of all keys. Runs of keys share their attributes. Keys without attributes are
@@ -126,6 +132,10 @@ class CurveReader {
         for (std::size_t k = 0; k < 2; ++k)
           attributes[key].data[k] = static_cast<double>(float_of(datum[4 * r + k], false));
         attributes[key].packed_weights = float_of(datum[4 * r + 2], (flag[r] & kTcb) == 0);
+        const bool numbers = std::isfinite(attributes[key].data[0]) &&
+                             std::isfinite(attributes[key].data[1]) &&
+                             ((flag[r] & kTcb) == 0 || std::isfinite(attributes[key].packed_weights));
+        if ((flag[r] & kCubic) != 0 && !numbers) refuse_number(key, "tangent");
       }
     }
     if (!fits || key != keys)

@@ -8,6 +8,7 @@
 #include <zlib.h>
 
 #include "core/base/error.h"
+#include "scenes/base/text_encoding.h"
 
 namespace cscd::scenes::fbx {
 namespace {
@@ -99,7 +100,7 @@ void visit_text(std::string_view text, std::size_t most, const std::string& what
     if (start == text.npos) break;
     text.remove_prefix(start);
     if (text.front() == ';') {  // a comment
-      text.remove_prefix(std::min(text.find('\n'), text.size()));
+      text.remove_prefix(std::min(text.find_first_of("\r\n"), text.size()));
       continue;
     }
     const std::size_t end = std::min(text.find_first_of(" \t\r\n,;"), text.size());
@@ -180,7 +181,8 @@ void require_new(std::int64_t version, bool binary) {
 
 Document parse(std::string_view bytes) {
   constexpr std::string_view kBinary = "Kaydara FBX Binary";
-  Document document = bytes.starts_with(kBinary) ? parse_binary(bytes) : parse_text(bytes);
+  Document document =
+      bytes.starts_with(kBinary) ? parse_binary(bytes) : parse_text(without_byte_order_mark(bytes));
   require_new(document.version, document.binary);
   return document;
 }

@@ -28,8 +28,13 @@ std::optional<double> number_in(const Element* property, std::size_t index) {
   const std::size_t i = kFirstPropertyValue + index;
   if (property == nullptr || i >= property->values.size()) return std::nullopt;
   const Value& value = property->values[i];
-  if (value.kind != Value::Kind::integer && value.kind != Value::Kind::real) return std::nullopt;
-  return value.real;
+  if (value.kind == Value::Kind::integer || value.kind == Value::Kind::real) return value.real;
+  // Switches are letters in some text files.
+  if (value.kind == Value::Kind::text && value.text.size() > 1)
+    throw InputError("property " + std::string(property->text(0)) + ": '" +
+                     std::string(value.text.substr(0, 40)) +
+                     "' is no number; repair it or export the file again");
+  return std::nullopt;
 }
 
 // Text files write "Model::Hips"; binary files write "Hips", two bytes, "Model".
@@ -173,6 +178,10 @@ std::int64_t integer(const Object& object, std::string_view name, std::int64_t o
 Vec3 vector(const Object& object, std::string_view name, const Vec3& otherwise) {
   const Element* property = property_of(object, name);
   Vec3 value = otherwise;
+  if (property != nullptr && property->values.size() > kFirstPropertyValue + 3)
+    throw InputError(
+        object.name + ": its property " + std::string(name) +
+        " has more than three numbers, as where points are written as commas; export the file again");
   for (std::size_t k = 0; k < 3; ++k)
     if (const auto part = number_in(property, k)) value[static_cast<int>(k)] = *part;
   return value;

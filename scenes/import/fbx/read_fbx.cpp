@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "core/base/error.h"
@@ -20,20 +21,19 @@ namespace {
 
 using namespace fbx;
 
-// Returns the frame rate that the number of a TimeMode stands for.
-double frames_per_second(const Objects& objects) {
+// Returns the frame rate that the number of a TimeMode stands for; nothing where it stands for none.
+std::optional<double> frames_per_second(const Objects& objects) {
   constexpr double kTelevision = 30000.0 / 1001, kFilm = 24000.0 / 1001, kFine = 60000.0 / 1001;
   constexpr double kRates[] = {0,  120, 100,  60,    50, 48, 30, 30,    kTelevision, kTelevision,
                                25, 24,  1000, kFilm, 0,  96, 72, kFine, 2 * kFine};
-  constexpr double kCustom = 14;
+  constexpr double kCustom = 14, kMost = 1e5;  // beyond, a custom rate is a mistake
   const double mode = objects.setting("TimeMode").value_or(0);
   double rate = 0;
   if (mode == kCustom)
     rate = objects.setting("CustomFrameRate").value_or(0);
   else if (mode >= 0 && mode < static_cast<double>(std::size(kRates)))
     rate = kRates[static_cast<std::size_t>(mode)];
-  // Without a rate, ticks serve as frames: the file's times are in FBX's own ticks in any case.
-  return std::isfinite(rate) && rate > 0 ? rate : objects.ticks_per_second();
+  return rate > 0 && rate <= kMost ? std::optional(rate) : std::nullopt;
 }
 
 class Builder {
@@ -41,6 +41,7 @@ class Builder {
   Builder(const Document& document, const CharacterLimits& limits) : objects_(document), limits_(limits) {}
 
   Character build() {
+    character_.frames_per_second = frames_per_second(objects_);
     clips_ = read_clips(objects_, limits_, clip_left_out_);
     for (const Clip& clip : clips_) note_animated(clip);
     add_nodes();
@@ -247,7 +248,8 @@ class Builder {
     animation.name = clip.name;
     animation.start = clip.start;
     animation.seconds = clip.seconds;
-    animation.ticks_per_second = frames_per_second(objects_);
+    // Without a rate, ticks serve as frames: the file's times are in FBX's own ticks in any case.
+    animation.ticks_per_second = character_.frames_per_second.value_or(objects_.ticks_per_second());
     for (const Object* model : in_order_) {
       const auto found = clip.models.find(model);
       if (found == clip.models.end()) continue;
@@ -309,7 +311,7 @@ class Builder {
     note(other_deformers_, "deformers that are neither skins nor blend shapes not applied");
     note(empty_clips_, "clips that animate nothing left out");
     note(objects_.all("Constraint").size(), "constraints not applied");
-    note(clip_left_out_.keys, "keys out of order or not finite ignored");
+    note(clip_left_out_.keys, "keys out of order ignored");
     note(clip_left_out_.ends, "animation curves go on in an unknown way, and hold beyond their keys");
     note(clip_left_out_.layers, "muted animation layers ignored");
     note(skin_left_out_.weights, "weights not positive or without a bone ignored");
@@ -330,7 +332,8 @@ class Builder {
   std::size_t vertices_ = 0, triangles_ = 0, copied_keys_ = 0;  // counts so far
   LeftOut clip_left_out_;
   SkinLeftOut skin_left_out_;
-  std::size_t lines_ = 0, overlapping_ = 0, other_surfaces_ = 0, again_ = 0, empty_clips_ = 0, other_deformers_ = 0;
+  std::size_t lines_ = 0, overlapping_ = 0, other_surfaces_ = 0, again_ = 0, empty_clips_ = 0,
+              other_deformers_ = 0;
 };
 
 }  // namespace

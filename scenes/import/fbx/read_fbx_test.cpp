@@ -135,6 +135,32 @@ std::pair<double, double> areas(const std::vector<double>& points, const std::ve
   return {sum, size};
 }
 
+TEST(FbxText, LinesMayEndInAnyWayBehindAByteOrderMark) {
+  const std::string text = triangle_file(property("Lcl Translation", {9, 8, 7})).text();
+  std::string returns = text, both;
+  std::replace(returns.begin(), returns.end(), '\n', '\r');
+  for (const char c : text) both += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  for (const std::string& file : {text, returns, both, "\xEF\xBB\xBF" + text})
+    expect_at(vertices_at(read_fbx(file, {}), 0)[0], kPoints[0] + Vec3(9, 8, 7));
+  EXPECT_TRUE(
+      says(test::refusal([] { read_fbx(std::string_view("\xFF\xFE;\0", 4), {}); }), "is text in UTF-16"));
+  const std::string cut = returns.substr(0, returns.find("PolygonVertexIndex"));
+  const auto lines = std::count(cut.begin(), cut.end(), '\r') + 1;
+  EXPECT_TRUE(says(test::refusal([&] { read_fbx(cut, {}); }), "line " + std::to_string(lines) + ": a brace"));
+}
+
+TEST(FbxText, PropertiesAreNumbersOrRefused) {
+  const auto moved = [](const std::string& numbers) {
+    std::string text = triangle_file(property("Lcl Translation", {9, 8, 7})).text();
+    return test::refusal([&] { read_fbx(text.replace(text.find("9,8,7"), 5, numbers), {}); });
+  };
+  EXPECT_EQ(moved("+9,8.,7e0"), "");
+  EXPECT_TRUE(says(moved("9,8,x7"), "property Lcl Translation: 'x7' is no number"));
+  EXPECT_TRUE(says(moved("9.5f,8,7"), "property Lcl Translation: '9.5f' is no number"));
+  EXPECT_TRUE(says(moved("9,5,8,7"), "Lcl Translation has more than three numbers"));
+  EXPECT_TRUE(says(moved("9,1.#IND,7"), "not finite"));
+}
+
 TEST(FbxMesh, PolygonsAreCutInsideAndFaceTheirWay) {
   // The polygons are a dart whose first diagonal lies outside, the dart with the second diagonal outside,
   // an L, and a comb of nine corners.

@@ -105,7 +105,10 @@ class SkinReader {
       if (vertices[i] < 0 || vertices[i] >= static_cast<std::int64_t>(part_.positions.size()))
         throw InputError(what + ": weighs vertex " + std::to_string(vertices[i]) + " of " +
                          std::to_string(part_.positions.size()) + "; repair it");
-      if (shares[i] > 0 && std::isfinite(shares[i]))
+      if (!std::isfinite(shares[i]))
+        throw InputError(what + ": its weight of vertex " + std::to_string(vertices[i]) +
+                         " is not a number; repair it");
+      if (shares[i] > 0)
         entries_.push_back({static_cast<std::size_t>(vertices[i]), {joint, shares[i]}});
       else if (shares[i] != 0)
         ++left_out_.weights;
