@@ -7,7 +7,6 @@
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <cmath>
 #include <cstring>
@@ -16,13 +15,16 @@
 #include <memory>
 #include <new>
 #include <set>
+#include <span>
 #include <string_view>
 
 #include "core/base/error.h"
-#include "scenes/import/collada.h"
+#include "scenes/import/collada/checked.h"
 #include "scenes/import/fbx/read_fbx.h"
 #include "scenes/import/file_system.h"
 #include "scenes/import/gltf/read_gltf.h"
+#include "scenes/import/x_text.h"
+#include "scenes/polygon/cut_polygon.h"
 
 namespace cscd::scenes {
 namespace {
@@ -91,10 +93,11 @@ class Reader {
         read_part(static_cast<int>(n), source_[n]->mMeshes[i]);
     for (unsigned i = 0; i < scene_.mNumAnimations; ++i) read_animation(*scene_.mAnimations[i]);
     note(lines_, "points and lines left out");
+    note(overlapping_, kOverlapping);
     note(morphs_, "blend shapes not applied");
     note(again_, "meshes that several nodes share taken once, as their joints place them");
     note(strangers_, "animation channels name no node of the file and are ignored");
-    note(dropped_keys_, "keys out of order or not finite ignored");
+    note(dropped_keys_, "keys out of order ignored");
     note(many_, "weights not positive or without a bone ignored");
     return std::move(character_);
   }
@@ -142,23 +145,29 @@ class Reader {
     if (vertices_ > limits_.vertices)
       throw InputError("has more than " + std::to_string(limits_.vertices) + " vertices; simplify the model");
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) part.positions.push_back(vector(mesh.mVertices[v]));
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3) {
-        ++lines_;
-        continue;
-      }
-      std::array<std::int32_t, 3> corners;
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (face.mIndices[k] >= mesh.mNumVertices)
-          throw InputError("mesh '" + part.name + "', triangle " + std::to_string(f) +
-                           ": names a vertex that does not exist; repair it");
-        corners[k] = static_cast<std::int32_t>(face.mIndices[k]);
-      }
-      part.triangles.push_back(corners);
-    }
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) add_face(mesh, f, part);
     read_joints(mesh, part);
     character_.parts.push_back(std::move(part));
+  }
+
+  void add_face(const aiMesh& mesh, unsigned index, Part& part) {
+    const std::span<const unsigned> written(mesh.mFaces[index].mIndices, mesh.mFaces[index].mNumIndices);
+    if (written.size() < 3) {
+      ++lines_;
+      return;
+    }
+    const std::string where = "mesh '" + part.name + "', face " + std::to_string(index);
+    std::vector<std::int32_t> corners;
+    for (const unsigned corner : written) {
+      if (corner >= mesh.mNumVertices)
+        throw InputError(where + ": names a vertex that does not exist; repair it");
+      corners.push_back(static_cast<std::int32_t>(corner));
+    }
+    const PolygonCut cut = cut_polygon(corners, part.positions, part.triangles);
+    if (cut == PolygonCut::none)
+      throw InputError(where + ": its " + std::to_string(corners.size()) +
+                       " corners cannot be cut into triangles; triangulate the mesh before the export");
+    overlapping_ += cut == PolygonCut::overlapping;
   }
 
   void read_joints(const aiMesh& mesh, Part& part) {
@@ -184,8 +193,10 @@ class Reader {
         if (weight.mVertexId >= mesh.mNumVertices)
           throw InputError("bone '" + text(bone.mName) + "': weighs a vertex that does not exist; repair it");
         const auto value = static_cast<double>(weight.mWeight);
-        if (!(value >= 0) || !std::isfinite(value)) ++many_;
-        if (!(value > 0) || !std::isfinite(value)) continue;
+        if (!std::isfinite(value))
+          throw InputError("bone '" + text(bone.mName) + "': a weight is not a number; repair it");
+        if (value < 0) ++many_;
+        if (!(value > 0)) continue;
         ++count[weight.mVertexId + std::size_t{1}];
         sum[weight.mVertexId] += value;
         entries.push_back({weight.mVertexId, {joint, value}});
@@ -207,7 +218,8 @@ class Reader {
       throw InputError("has more than " + std::to_string(limits_.keys) + " animation keys; resample it");
     for (unsigned i = 0; i < count; ++i) {
       const double time = from[i].mTime * seconds_per_tick;
-      if (!std::isfinite(time) || (!to.empty() && !(time > to.back().time)))
+      if (!std::isfinite(time)) throw InputError("an animation key's time is not a number; repair it");
+      if (!to.empty() && !(time > to.back().time))
         ++dropped_keys_;
       else
         to.push_back({time, convert(from[i].mValue)});
@@ -263,7 +275,8 @@ class Reader {
   std::set<std::string> twice_;          // names that two nodes have
   std::map<unsigned, int> skinned_;      // meshes with joints that already have a part
   std::size_t vertices_ = 0, keys_ = 0;  // counts so far
-  std::size_t lines_ = 0, morphs_ = 0, again_ = 0, strangers_ = 0, dropped_keys_ = 0, many_ = 0;
+  std::size_t lines_ = 0, overlapping_ = 0, morphs_ = 0, again_ = 0, strangers_ = 0, dropped_keys_ = 0,
+              many_ = 0;
 };
 
 std::string bytes_of(const std::filesystem::path& path, const CharacterLimits& limits) {
@@ -276,6 +289,21 @@ std::string bytes_of(const std::filesystem::path& path, const CharacterLimits& l
   bytes.resize(file->Read(bytes.data(), 1, bytes.size()));
   files.Close(file);
   return bytes;
+}
+
+// A file as assimp is to read it, and notes on it.
+struct CheckedFile {
+  std::string bytes;
+  std::vector<std::string> notes;
+};
+
+CheckedFile checked_file(const Format& format, std::string bytes) {
+  if (format.name == "Collada") {
+    CheckedCollada checked = checked_collada(bytes);
+    return {std::move(checked.xml), std::move(checked.notes)};
+  }
+  if (format.name == "DirectX X") return {std::string(checked_x(bytes)), {}};
+  return {std::move(bytes), {}};
 }
 
 }  // namespace
@@ -292,10 +320,12 @@ Character read_model(const std::filesystem::path& path, const CharacterLimits& l
   keep_only(importer, format.importer);
   importer.SetIOHandler(new FolderFiles(path, limits.file_bytes));  // the importer owns it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  // No other step of assimp runs. Vertices are welded by position instead (assimp's own step keeps seams of
-  // normals and textures open), all weights of a vertex are kept (assimp can limit them to four), and
-  // validate() makes the checks.
-  const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
+  // No further step of assimp runs. Polygons are cut as everywhere in this project, vertices are welded by
+  // position (assimp's own step keeps seams of normals and textures open), all weights of a vertex are kept
+  // (assimp can limit them to four), and validate() makes the checks.
+  const CheckedFile file = checked_file(format, bytes_of(path, limits));
+  const aiScene* scene =
+      importer.ReadFileFromMemory(file.bytes.data(), file.bytes.size(), 0, &format.extension[1]);
   const std::string_view error = importer.GetErrorString();
   if (error.find("bad_alloc") != error.npos) throw std::bad_alloc();
   if (scene == nullptr)
@@ -304,9 +334,7 @@ Character read_model(const std::filesystem::path& path, const CharacterLimits& l
   Character character = Reader(*scene, limits).read();
   character.format = format.name;
   if (format.name == "Collada") character.up = "y";  // to which assimp turns what the file calls up
-  if (format.name == "Collada")
-    for (std::string& note : notes_on_collada(bytes_of(path, limits)))
-      character.notes.push_back(std::move(note));
+  character.notes.insert(character.notes.end(), file.notes.begin(), file.notes.end());
   validate(character, limits);
   return character;
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
+#include "scenes/base/text_encoding.h"
 #include "scenes/import/gltf/buffers.h"
 #include "scenes/import/gltf/json.h"
 #include "scenes/sandbox/own_folder.h"
@@ -44,7 +45,7 @@ std::string_view without_filling(std::string_view text) {
 Container split(std::span<const char> file) {
   Container pieces;
   if (file.size() < 4 || std::memcmp(file.data(), "glTF", 4) != 0) {
-    pieces.json = without_filling({file.data(), file.size()});
+    pieces.json = without_filling(without_byte_order_mark({file.data(), file.size()}));
     return pieces;
   }
   if (file.size() < kHeader + kChunkHeader)

@@ -1,0 +1,183 @@
+#include <algorithm>
+#include <array>
+
+#include "core/base/error.h"
+#include "scenes/import/collada/parts.h"
+
+namespace cscd::scenes::collada {
+namespace {
+
+// Keys that lie at most this many seconds apart stand for the curve between them: 1/60 s, with room for how
+// times are rounded.
+constexpr double kDense = 1.0 / 60 + 1e-4;
+
+// The most numbers that assimp has room for in a key.
+constexpr std::size_t kMostInKey = 16;
+
+std::size_t counted(const std::map<std::string, std::size_t>& counts, const std::string& word) {
+  const auto found = counts.find(word);
+  return found == counts.end() ? 0 : found->second;
+}
+
+// What assimp reads behind the name of a transform: all its numbers, one by its name, or one of a matrix.
+bool is_known_member(std::string_view member) {
+  constexpr std::array<std::string_view, 5> kNames = {"", ".X", ".Y", ".Z", ".ANGLE"};
+  if (std::ranges::find(kNames, member) != kNames.end()) return true;
+  const auto digit = [&](std::size_t at) { return member[at] >= '0' && member[at] <= '3'; };
+  return member.size() == 6 && member[0] == '(' && digit(1) && member.substr(2, 2) == ")(" && digit(4) &&
+         member[5] == ')';
+}
+
+// The numbers of a sampler's keys.
+struct Keys {
+  std::vector<double> times, outputs, leaving, arriving;
+};
+
+class Animations {
+ public:
+  explicit Animations(const Document& document) : document_(document) { count_nodes(); }
+
+  void require_clear_joints() const {
+    for (const pugi::xml_node library : document_.root().children("library_controllers"))
+      for (const pugi::xml_node controller : library.children("controller")) {
+        const pugi::xml_node joints = controller.child("skin").child("joints");
+        for (const pugi::xml_node array : document_.source_of(joints, "JOINT").children())
+          if (array.name() == std::string_view("Name_array") ||
+              array.name() == std::string_view("IDREF_array"))
+            for (const std::string_view word : words_of(array))
+              if (const std::string joint(word); fits(joint) > 1)
+                throw InputError("bone '" + joint + "': several nodes have this name; rename all but one");
+      }
+  }
+
+  std::vector<std::string> notes_on_keys() const {
+    std::size_t dense = 0;
+    for (const pugi::xml_node library : document_.root().children("library_animations"))
+      walk(library, [&](pugi::xml_node element) {
+        if (element.name() == std::string_view("channel")) dense += check_channel(element);
+      });
+    if (dense == 0) return {};
+    return {
+        std::to_string(dense) +
+        " animation channels of keys joined by curves or steps are read as straight lines; their keys are at "
+        "most 1/60 s apart"};
+  }
+
+ private:
+  // Counts the names and ids of the nodes that the scene shows or can take from the library.
+  void count_nodes() {
+    const auto count = [this](pugi::xml_node element) {
+      if (element.name() != std::string_view("node")) return;
+      const std::string id = element.attribute("id").value(), name = element.attribute("name").value(),
+                        sid = element.attribute("sid").value();
+      ++named_[id];
+      if (name != id) ++named_[name];
+      ++by_sid_[sid];
+      if (!id.empty()) ++nodes_[id];
+    };
+    const std::string scene = document_.scene().attribute("id").value();
+    for (const pugi::xml_node library : document_.root().children("library_visual_scenes"))
+      for (const pugi::xml_node visual : library.children("visual_scene"))
+        if (scene.empty() || scene == visual.attribute("id").value()) walk(visual, count);
+    for (const pugi::xml_node library : document_.root().children("library_nodes")) walk(library, count);
+  }
+
+  // Returns how many nodes assimp would take for a joint: those whose id or name fits, or, if there are
+  // none, those whose scoped id fits.
+  std::size_t fits(const std::string& joint) const {
+    const std::size_t named = counted(named_, joint);
+    return named > 0 ? named : counted(by_sid_, joint);
+  }
+
+  // Tells whether the channel moves a node by dense keys that are joined by other than straight lines.
+  bool check_channel(pugi::xml_node channel) const {
+    const std::string target = channel.attribute("target").value(),
+                      where = "animation channel '" + target + "'";
+    const std::size_t slash = target.find('/');
+    const std::string node = target.substr(0, slash);
+    const std::size_t nodes = counted(nodes_, node);
+    if (nodes == 0) return false;
+    if (nodes > 1)
+      throw InputError("animated node '" + node + "': several nodes have this id; rename all but one");
+    const std::string_view transform = slash == target.npos ? "" : std::string_view(target).substr(slash + 1);
+    const std::size_t member = std::min(transform.find_first_of(".("), transform.size());
+    if (transform.find('/') != transform.npos || !is_known_member(transform.substr(member)))
+      throw InputError(where +
+                       ": moves a part of a transform that is not read; bake the animation on export");
+    const pugi::xml_node sampler = document_.target_of(channel.attribute("source").value());
+    if (sampler.parent() != channel.parent())
+      throw InputError(where + ": its sampler is not in the same <animation>; export it again");
+    const std::vector<std::string_view> kinds =
+        words_of(document_.source_of(sampler, "INTERPOLATION").child("Name_array"));
+    const bool straight = std::ranges::all_of(kinds, [](std::string_view kind) { return kind == "LINEAR"; });
+    const Keys keys = read_keys(sampler, !straight, where);
+    bool bent = false;
+    for (std::size_t i = 0; i + 1 < keys.times.size() && i < kinds.size(); ++i) {
+      if (kinds[i] == "LINEAR" || stands_still(kinds[i], i, keys)) continue;
+      bent = true;
+      if (!(keys.times[i + 1] - keys.times[i] <= kDense))
+        throw InputError(where + ": its keys are joined by " + std::string(kinds[i]) +
+                         ", which is not read; bake the animation to 60 keys a second on export");
+    }
+    return bent;
+  }
+
+  Keys read_keys(pugi::xml_node sampler, bool with_tangents, const std::string& where) const {
+    Keys keys;
+    std::optional<Source> times, outputs;
+    try {
+      times = document_.numbers_of_source(sampler, "INPUT");
+      outputs = document_.numbers_of_source(sampler, "OUTPUT");
+    } catch (const InputError& error) {
+      throw InputError(where + ": " + error.what());
+    }
+    if (!times || !outputs || times->stride != 1 || times->offset != 0 ||
+        times->count != times->numbers.size() || times->count != outputs->count ||
+        outputs->stride > kMostInKey)
+      throw InputError(where +
+                       ": its times and values are missing or do not fit each other; export it again");
+    keys.times = std::move(times->numbers);
+    keys.outputs = std::move(outputs->numbers);
+    const auto falls = std::ranges::adjacent_find(keys.times, [](double a, double b) { return !(a < b); });
+    if (falls != keys.times.end())
+      throw InputError(where + ": the time of key " + std::to_string(falls - keys.times.begin() + 1) +
+                       " (counted from 0) is not after that of the key before; resample the animation");
+    if (!with_tangents) return keys;
+    const auto tangents = [&](const char* meaning) -> std::vector<double> {
+      const pugi::xml_node array = document_.source_of(sampler, meaning).child("float_array");
+      return array ? numbers_of(array) : std::vector<double>();
+    };
+    keys.leaving = tangents("OUT_TANGENT");
+    keys.arriving = tangents("IN_TANGENT");
+    return keys;
+  }
+
+  // Tells whether a segment keeps one value all the way, so that it is straight however its keys are joined.
+  static bool stands_still(std::string_view kind, std::size_t key, const Keys& keys) {
+    const std::size_t count = keys.times.size(), numbers = keys.outputs.size() / count;
+    if (numbers == 0) return false;
+    for (std::size_t k = 0; k < numbers; ++k)
+      if (keys.outputs[numbers * key + k] != keys.outputs[numbers * (key + 1) + k]) return false;
+    if (kind == "STEP") return true;
+    // Where there is one value, tangents of Bezier curves are points in the plane of time and value.
+    if (kind != "BEZIER" || numbers != 1 || keys.leaving.size() != 2 * count ||
+        keys.arriving.size() != 2 * count)
+      return false;
+    return keys.leaving[2 * key + 1] == keys.outputs[key] &&
+           keys.arriving[2 * (key + 1) + 1] == keys.outputs[key];
+  }
+
+  const Document& document_;
+  std::map<std::string, std::size_t> named_, by_sid_;  // how many nodes have an id or a name; a scoped id
+  std::map<std::string, std::size_t> nodes_;           // how many nodes have an id
+};
+
+}  // namespace
+
+std::vector<std::string> check_animations(const Document& document) {
+  const Animations animations(document);
+  animations.require_clear_joints();
+  return animations.notes_on_keys();
+}
+
+}  // namespace cscd::scenes::collada
