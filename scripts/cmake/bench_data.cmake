@@ -2,7 +2,7 @@
 #
 #   cscd_build_info(ROOM)   for the room that includes these two headers:
 #
-# build_info.h   compiler, flags and library versions, written when CMake configures
+# build_info.h   compiler, flags and library versions, written when CMake configures, for each configuration
 # commit.h       the commit and whether the sources differ from it: asked from git at every build, so that a record
 #                never names an older state than the binary's
 #
@@ -11,18 +11,29 @@
 # data_files.cpp   bench/**.json, so that the program needs no files of its own beside it
 function(cscd_build_info room)
   set(generated ${PROJECT_BINARY_DIR}/generated)
-  string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
   get_target_property(room_options cscd_flags INTERFACE_COMPILE_OPTIONS)
   list(FILTER room_options EXCLUDE REGEX "\\$<")
-  string(JOIN " " flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${room_options})
-  if(CSCD_NATIVE)
-    string(APPEND flags " -march=native")
-  endif()
   set(instruction_sets "this set alone")
   if(CSCD_ALL_ISAS)
     set(instruction_sets "avx512, avx2 and baseline")
   endif()
-  configure_file(${PROJECT_SOURCE_DIR}/scripts/cmake/build_info.h.in ${generated}/build_info.h @ONLY)
+  set(folder ${generated})
+  set(build_types ${CMAKE_BUILD_TYPE})
+  if(CSCD_MULTI_CONFIG)
+    set(build_types ${CMAKE_CONFIGURATION_TYPES})
+    target_include_directories(${room} PUBLIC ${generated}/$<CONFIG>)
+  endif()
+  foreach(build_type IN LISTS build_types)
+    string(TOUPPER "${build_type}" type)
+    string(JOIN " " flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${room_options})
+    if(CSCD_NATIVE)
+      string(APPEND flags " -march=native")
+    endif()
+    if(CSCD_MULTI_CONFIG)
+      set(folder ${generated}/${build_type})
+    endif()
+    configure_file(${PROJECT_SOURCE_DIR}/scripts/cmake/build_info.h.in ${folder}/build_info.h @ONLY)
+  endforeach()
 
   add_custom_target(cscd_commit
     COMMAND ${CMAKE_COMMAND} -D SOURCE=${PROJECT_SOURCE_DIR} -D OUT=${generated}/commit.h

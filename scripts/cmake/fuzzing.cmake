@@ -6,3 +6,4 @@ set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g -fsanitize=fuzzer-no-link,address,undefined -f
     CACHE STRING "")
 set(CMAKE_EXE_LINKER_FLAGS_DEBUG "-fsanitize=address,undefined" CACHE STRING "")
 set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON CACHE BOOL "")
+set(CSCD_WARNINGS_AS_ERRORS ON CACHE BOOL "")

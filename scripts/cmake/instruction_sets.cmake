@@ -24,6 +24,9 @@ if(CSCD_ALL_ISAS)
     message(FATAL_ERROR "CSCD_ALL_ISAS compiles for each instruction set; configure with it or with one set, not both: "
                         "-DCSCD_ALL_ISAS=OFF")
   endif()
+  # Beside clang, CMake prefers ld.lld, which does not know --force-group-allocation.
+  find_program(CSCD_GNU_LINKER NAMES ld.bfd ld REQUIRED)
+  mark_as_advanced(CSCD_GNU_LINKER)
 endif()
 
 # cscd_rooms_below(OUT REGEX ROOM...): all rooms that are reached from the given ones, these included, whose names match.
@@ -45,7 +48,7 @@ function(cscd_rooms_below out regex)
   set(${out} ${seen} PARENT_SCOPE)
 endfunction()
 
-# cscd_room_objects(OUT ROOM...): the objects of rooms as they are compiled for the tests and for every machine.
+# cscd_room_objects(OUT ROOM...): the objects of rooms, or of what cscd_compile_for() makes of rooms.
 function(cscd_room_objects out)
   set(objects "")
   foreach(room IN LISTS ARGN)
@@ -58,8 +61,8 @@ function(cscd_room_objects out)
   set(${out} ${objects} PARENT_SCOPE)
 endfunction()
 
-# cscd_compile_for(OUT ISA NAME ROOM...): compiles the sources of rooms once more, for ISA, as NAME.
-function(cscd_compile_for out isa name)
+# cscd_compile_for(ISA NAME ROOM...): compiles the sources of rooms once more, for ISA, as the static library NAME.
+function(cscd_compile_for isa name)
   set(sources "")
   foreach(room IN LISTS ARGN)
     get_target_property(type ${room} TYPE)
@@ -68,35 +71,45 @@ function(cscd_compile_for out isa name)
       list(APPEND sources ${own})
     endif()
   endforeach()
-  add_library(${name} OBJECT ${sources})
+  add_library(${name} STATIC ${sources})
   target_compile_options(${name} PRIVATE ${CSCD_OPTIONS_${isa}})
   target_link_libraries(${name} PRIVATE ${ARGN} cscd_flags)
   if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
     target_compile_options(${name} PRIVATE ${CSCD_PARSED_OPTIONS})
     target_precompile_headers(${name} PRIVATE ${CSCD_PARSED})
   endif()
-  set(${out} $<FILTER:$<TARGET_OBJECTS:${name}>,EXCLUDE,cmake_pch> PARENT_SCOPE)
 endfunction()
 
-# cscd_hide_copy(OUT ISA ENTRY SOURCE OBJECT...): links SOURCE, in which the macro CSCD_COPY is ENTRY, and OBJECTs to one
-# object that shows the name ENTRY alone.
+# cscd_hide_copy(OUT ISA ENTRY SOURCE ROOM...): links SOURCE, in which the macro CSCD_COPY is ENTRY, and all objects of the rooms
+# to one object that shows the name ENTRY alone. OUT is the object, and ENTRY_object the target that makes it.
+#
+# The objects are linked from static libraries, because those are files for which each generator has a rule: makefiles have none
+# for the objects of another target.
 function(cscd_hide_copy out isa entry source)
-  add_library(${entry} OBJECT ${source})
+  add_library(${entry} STATIC ${source})
   target_compile_definitions(${entry} PRIVATE CSCD_COPY=${entry})
   target_compile_options(${entry} PRIVATE ${CSCD_OPTIONS_${isa}})
   target_include_directories(${entry} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/library/include)
   target_link_libraries(${entry} PRIVATE Eigen3::Eigen cscd_flags)
-  set(objects $<TARGET_OBJECTS:${entry}> ${ARGN})
-  set(object ${PROJECT_BINARY_DIR}/${entry}.o)
+  set(libraries ${entry})
+  foreach(room IN LISTS ARGN)
+    get_target_property(type ${room} TYPE)
+    if(type STREQUAL STATIC_LIBRARY)
+      list(APPEND libraries ${room})
+    endif()
+  endforeach()
+  list(TRANSFORM libraries REPLACE "(.+)" "$<TARGET_FILE:\\1>" OUTPUT_VARIABLE archives)
+  set(object ${PROJECT_BINARY_DIR}/${CSCD_CONFIG_FOLDER}${entry}.o)
   # A constructor of a static object would run whatever set is chosen: the last command refuses them.
   add_custom_command(OUTPUT ${object}
-    COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${object}.whole "${objects}"
+    COMMAND ${CSCD_GNU_LINKER} -r --force-group-allocation -o ${object}.whole --whole-archive ${archives}
     COMMAND ${CMAKE_OBJCOPY} --keep-global-symbol=${entry} ${object}.whole ${object}
     COMMAND ${CMAKE_COMMAND} -D OBJDUMP=${CMAKE_OBJDUMP} -D OBJECT=${object} -D ENTRY=${entry}
             -P ${PROJECT_SOURCE_DIR}/scripts/cmake/check_copy.cmake
-    DEPENDS "${objects}" ${PROJECT_SOURCE_DIR}/scripts/cmake/check_copy.cmake
-    COMMAND_EXPAND_LISTS VERBATIM COMMENT "Linking the copy for ${isa}")
-  set_source_files_properties(${object} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+    DEPENDS ${libraries} ${PROJECT_SOURCE_DIR}/scripts/cmake/check_copy.cmake
+    VERBATIM COMMENT "Linking the copy for ${isa}")
+  # The static and the shared library both take the object, and makefiles would make it for both at once.
+  add_custom_target(${entry}_object DEPENDS ${object})
   set(${out} ${object} PARENT_SCOPE)
 endfunction()
 
@@ -108,8 +121,9 @@ function(cscd_program_for_each_isa program main room)
   get_property(in_library GLOBAL PROPERTY cscd_library_rooms)
   list(REMOVE_ITEM wide ${in_library})
   foreach(isa IN LISTS CSCD_WIDE_ISAS)
-    cscd_compile_for(objects ${isa} ${program}_${isa} ${wide})
-    add_executable(${program}-${isa} ${main} ${objects} $<TARGET_OBJECTS:cscd_library_${isa}>)
+    cscd_compile_for(${isa} ${program}_${isa} ${wide})
+    cscd_room_objects(objects ${program}_${isa} cscd_library_${isa})
+    add_executable(${program}-${isa} ${main} ${objects})
     target_link_libraries(${program}-${isa} PRIVATE ${room} cscd_flags)
     add_dependencies(${program} ${program}-${isa})
     install(TARGETS ${program}-${isa} COMPONENT program)

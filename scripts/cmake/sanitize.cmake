@@ -5,3 +5,4 @@ set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g -D_GLIBCXX_ASSERTIONS -fsanitize=address,undef
 set(CMAKE_EXE_LINKER_FLAGS_DEBUG "-fsanitize=address,undefined" CACHE STRING "")
 set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON CACHE BOOL "")  # every file includes what it uses
 set(CSCD_UNITY OFF CACHE BOOL "")
+set(CSCD_WARNINGS_AS_ERRORS ON CACHE BOOL "")
