@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/base/vec3.h"
@@ -25,7 +26,7 @@ namespace cscd {
 // One thread asks at a time. Errors of the input are InputError.
 class SelfCollision::Engine {
  public:
-  std::atomic_flag in_use;  // by a call
+  std::atomic<std::thread::id> asked_by;  // the thread whose call is being answered; none: the default id
 
   Engine(const Faces& faces, const Positions& reference, Options options);
 

@@ -304,6 +304,20 @@ TEST(Input, ASecondThreadIsTurnedAway) {
   EXPECT_EQ(wrong, 0);
 }
 
+// Mutation: a call of the thread that is being answered is taken for that of another thread.
+TEST(Input, AFunctionThatAsksTheObjectWhichCallsItIsNamed) {
+  SelfCollision body(kFaces, kStart);
+  const std::vector<double> still(kStart.size(), 0);
+  const SelfCollision::Paths paths{[&](double) {
+                                     body.is_free(kStart, kEnd);
+                                     return still;
+                                   },
+                                   [](double, double) { return std::vector<double>{0}; }};
+  const std::string text = test::refusal<std::logic_error>([&] { body.true_motion(paths, 0, 1); });
+  EXPECT_NE(text.find("a function given to that asks the same object"), std::string::npos) << text;
+  EXPECT_TRUE(body.first_contact(kStart, kEnd).time());  // the object is as it was
+}
+
 // Mutations: the square of a distance overflows, or vanishes.
 TEST(Input, ExtremeNumbersAreAnswered) {
   constexpr double kSmallest = std::numeric_limits<double>::denorm_min(),

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <optional>
 #include <stdexcept>
+#include <thread>
 
 #include "core/base/error.h"
 #include "core/base/instruction_set.h"
@@ -24,20 +25,33 @@ auto checked(const Call& call) {
   }
 }
 
-// Asks an object, unless another thread is asking it.
+// Holds an object for one call, and throws where another call holds it: that of another thread, or the call
+// of this thread that is asking a function of the caller for positions or for a bound.
+class Turn {
+ public:
+  explicit Turn(std::atomic<std::thread::id>& asked_by) : asked_by_(asked_by) {
+    const std::thread::id own = std::this_thread::get_id();
+    std::thread::id holder;
+    if (asked_by_.compare_exchange_strong(holder, own, std::memory_order_acquire, std::memory_order_relaxed))
+      return;
+    throw std::logic_error(
+        holder == own ? "this SelfCollision is being asked by true_motion(), and a function given to that "
+                        "asks the same object; ask another object there"
+                      : "this SelfCollision is answering another thread; give each thread one of its own");
+  }
+  ~Turn() { asked_by_.store({}, std::memory_order_release); }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  std::atomic<std::thread::id>& asked_by_;
+};
+
+// Asks an object, unless a call is asking it already.
 template <class Engine, class Call>
 auto ask(const std::unique_ptr<Engine>& engine, const Call& call) {
-  struct Turn {
-    std::atomic_flag& taken;
-    explicit Turn(std::atomic_flag& flag) : taken(flag) {
-      if (taken.test_and_set(std::memory_order_acquire))
-        throw std::logic_error(
-            "this SelfCollision is answering another thread; give each thread one of its own");
-    }
-    ~Turn() { taken.clear(std::memory_order_release); }
-  };
   Engine& own = held(engine);
-  const Turn turn(own.in_use);
+  const Turn turn(own.asked_by);
   return checked([&] { return call(own); });
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <string>
+#include <vector>
 
 #include "core/base/error.h"
 
@@ -61,17 +63,26 @@ InstructionSet chosen_among(std::span<const InstructionSet> built) {
                        " alone, which this machine lacks; build without CSCD_NATIVE, or on this machine");
     return *best;
   }
-  const std::string what = "CSCD_ISA=" + std::string(asked);
   const auto named = std::ranges::find(kAll, asked, to_string);
+  std::string fault;
   if (named == std::end(kAll))
-    throw InputError(what + ": no such instruction set; give one of " + names_of(kAll) +
-                     ", or leave it unset");
-  if (std::ranges::find(built, *named) == built.end())
-    throw InputError(what + ": this build has kernels for " + names_of(built) +
-                     " alone; give one of them, or build without CSCD_NATIVE");
-  if (!machine_has(*named))
-    throw InputError(what + ": this machine lacks it; leave it unset for the best that the machine has");
-  return *named;
+    fault = "no such instruction set";
+  else if (std::ranges::find(built, *named) == built.end())
+    fault = "this build has no kernels for it";
+  else if (!machine_has(*named))
+    fault = "this machine lacks it";
+  else
+    return *named;
+  // What can be used here is advised, and nothing else: a set that exists may be missing from the build or
+  // the machine.
+  std::vector<InstructionSet> usable;
+  std::ranges::copy_if(kAll, std::back_inserter(usable), [&](InstructionSet set) {
+    return std::ranges::find(built, set) != built.end() && machine_has(set);
+  });
+  throw InputError("CSCD_ISA=" + std::string(asked) + ": " + fault + "; " +
+                   (usable.empty()
+                        ? "this build has kernels for " + names_of(built) + " alone, which this machine lacks"
+                        : "leave CSCD_ISA unset, or give " + names_of(usable)));
 }
 
 }  // namespace cscd

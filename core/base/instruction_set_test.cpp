@@ -46,14 +46,21 @@ TEST_F(ChosenInstructionSet, IsWhatTheEnvironmentNames) {
 }
 
 TEST_F(ChosenInstructionSet, IsRefusedWhereItCannotBe) {
-  EXPECT_EQ(refusal("AVX2", {baseline, avx2}),
-            "CSCD_ISA=AVX2: no such instruction set; give one of avx512, avx2, baseline, or leave it unset");
+  // Mutation: sets that the build or the machine lacks are advised.
+  EXPECT_EQ(refusal("AVX2", {baseline}),
+            "CSCD_ISA=AVX2: no such instruction set; leave CSCD_ISA unset, or give baseline");
+  EXPECT_EQ(refusal("sse", {baseline, avx2, avx512}),
+            "CSCD_ISA=sse: no such instruction set; leave CSCD_ISA unset, or give " +
+                std::string(machine_has(avx512) ? "avx512, " : "") + (machine_has(avx2) ? "avx2, " : "") +
+                "baseline");
   EXPECT_EQ(refusal("avx2", {baseline}),
-            "CSCD_ISA=avx2: this build has kernels for baseline alone; give one of them, or build without "
-            "CSCD_NATIVE");
+            "CSCD_ISA=avx2: this build has no kernels for it; leave CSCD_ISA unset, or give baseline");
   if (!machine_has(avx512)) {
-    EXPECT_EQ(refusal("avx512", {avx512}),
-              "CSCD_ISA=avx512: this machine lacks it; leave it unset for the best that the machine has");
+    EXPECT_EQ(refusal("avx512", {avx512, baseline}),
+              "CSCD_ISA=avx512: this machine lacks it; leave CSCD_ISA unset, or give baseline");
+    EXPECT_EQ(refusal("sse", {avx512}),
+              "CSCD_ISA=sse: no such instruction set; this build has kernels for avx512 alone, which this "
+              "machine lacks");
   }
 }
 

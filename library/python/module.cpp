@@ -95,10 +95,26 @@ std::size_t index_of(int obstacle) {
 
 constexpr auto kWithoutLock = py::call_guard<py::gil_scoped_release>();
 
+// Has objects of a class pickled and copied by the listed members, in order.
+template <class Type, class... Members>
+void pickle_by(py::class_<Type>& type, Members Type::*... members) {
+  type.def(py::pickle([=](const Type& value) { return py::make_tuple(value.*members...); },
+                      [=](const py::tuple& state) {
+                        if (state.size() != sizeof...(members))
+                          throw std::invalid_argument(
+                              "this was pickled by another version of cscd; make it anew");
+                        Type value{};
+                        std::size_t i = 0;
+                        ((value.*members = state[i++].template cast<Members>()), ...);
+                        return value;
+                      }));
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_cscd, module) {
   module.doc() = "Continuous self-collision detection of deforming triangle meshes.";
+  module.attr("__version__") = CSCD_VERSION;
 
   py::class_<SelfCollision::Exclusions>(module, "Exclusions")
       .def(
@@ -110,65 +126,61 @@ PYBIND11_MODULE(_cscd, module) {
                                              rest_distance,       ongoing};
           }));
 
-  py::class_<SelfCollision::Contact>(module, "Contact", "Two features that touch.")
-      .def_readonly("edges", &SelfCollision::Contact::edges,
-                    "Whether two edges touch; otherwise a vertex and a face.")
-      .def_readonly("vertices", &SelfCollision::Contact::vertices,
+  using Contact = SelfCollision::Contact;
+  py::class_<Contact> contact(module, "Contact", "Two features that touch.");
+  contact.def_readonly("edges", &Contact::edges, "Whether two edges touch; otherwise a vertex and a face.")
+      .def_readonly("vertices", &Contact::vertices,
                     "The vertex and the corners of the face, or the ends of both edges.")
-      .def_readonly("face", &SelfCollision::Contact::face, "The face, or -1.")
-      .def_readonly("time", &SelfCollision::Contact::time, "The earliest time of the contact, in [0, 1].")
-      .def_readonly("point", &SelfCollision::Contact::point,
-                    "Where the two touch at that time, on the first feature, [3].")
-      .def_readonly("normal", &SelfCollision::Contact::normal,
+      .def_readonly("face", &Contact::face, "The face, or -1.")
+      .def_readonly("time", &Contact::time, "The earliest time of the contact, in [0, 1].")
+      .def_readonly("point", &Contact::point, "Where the two touch at that time, on the first feature, [3].")
+      .def_readonly("normal", &Contact::normal,
                     "Unit vector from the second feature towards where the first came from, [3]; or zero.")
-      .def_readonly("weights", &SelfCollision::Contact::weights,
+      .def_readonly("weights", &Contact::weights,
                     "Barycentric weights in the face, or the shares of the way along both edges, [3].")
-      .def_readonly("normal_velocity", &SelfCollision::Contact::normal_velocity,
+      .def_readonly("normal_velocity", &Contact::normal_velocity,
                     "Of the first feature away from the second, in lengths a step.")
-      .def("__repr__", [](const SelfCollision::Contact& c) {
+      .def("__repr__", [](const Contact& c) {
         const auto& [p, q, r, s] = c.vertices;
         return py::str(c.edges ? "<cscd.Contact: edges {} {} and {} {}, at t = {}>"
                                : "<cscd.Contact: vertex {} and face {} {} {}, at t = {}>")
             .format(p, q, r, s, c.time);
       });
+  pickle_by(contact, &Contact::edges, &Contact::vertices, &Contact::face, &Contact::time, &Contact::point,
+            &Contact::normal, &Contact::weights, &Contact::normal_velocity);
 
-  py::class_<SelfCollision::Answer>(module, "Answer", "What is known of one step.")
-      .def_readonly("contacts", &SelfCollision::Answer::contacts, "List of Contact, by time.")
-      .def_property_readonly("free", &SelfCollision::Answer::free, "Whether nothing touches or crosses.")
-      .def_property_readonly("close_at_start", &SelfCollision::Answer::close_at_start,
+  using Answer = SelfCollision::Answer;
+  py::class_<Answer> answer(module, "Answer", "What is known of one step.");
+  answer.def_readonly("contacts", &Answer::contacts, "List of Contact, by time.")
+      .def_property_readonly("free", &Answer::free, "Whether nothing touches or crosses.")
+      .def_property_readonly("close_at_start", &Answer::close_at_start,
                              "How many pairs touch, or with a thickness are close, at the start already.")
-      .def_property_readonly("time", &SelfCollision::Answer::time, "Of the earliest contact, or None.")
-      .def_property_readonly("intersects_at_start", &SelfCollision::Answer::intersects_at_start)
+      .def_property_readonly("time", &Answer::time, "Of the earliest contact, or None.")
+      .def_property_readonly("intersects_at_start", &Answer::intersects_at_start)
       .def_property_readonly(
-          "start_crossings", [](const SelfCollision::Answer& a) { return table_of(a.start_crossings); },
+          "start_crossings", [](const Answer& a) { return table_of(a.start_crossings); },
           "[pairs, 2] int: faces that cross at the start.")
       .def_property_readonly(
           "times",
-          [](const SelfCollision::Answer& a) {
-            return column_of<double>(a.contacts, [](const auto& c) { return c.time; });
-          },
+          [](const Answer& a) { return column_of<double>(a.contacts, [](const auto& c) { return c.time; }); },
           "[contacts] float")
       .def_property_readonly(
           "edges",
-          [](const SelfCollision::Answer& a) {
-            return column_of<bool>(a.contacts, [](const auto& c) { return c.edges; });
-          },
+          [](const Answer& a) { return column_of<bool>(a.contacts, [](const auto& c) { return c.edges; }); },
           "[contacts] bool")
       .def_property_readonly(
           "vertices",
-          [](const SelfCollision::Answer& a) {
+          [](const Answer& a) {
             return rows_of<int>(a.contacts, 4, [](const auto& c, std::size_t k) { return c.vertices[k]; });
           },
           "[contacts, 4] int")
       .def_property_readonly(
           "faces",
-          [](const SelfCollision::Answer& a) {
-            return column_of<int>(a.contacts, [](const auto& c) { return c.face; });
-          },
+          [](const Answer& a) { return column_of<int>(a.contacts, [](const auto& c) { return c.face; }); },
           "[contacts] int; -1 where edges touch")
       .def_property_readonly(
           "points",
-          [](const SelfCollision::Answer& a) {
+          [](const Answer& a) {
             return rows_of<double>(a.contacts, 3, [](const auto& c, std::size_t k) {
               return c.point[static_cast<Eigen::Index>(k)];
             });
@@ -176,83 +188,104 @@ PYBIND11_MODULE(_cscd, module) {
           "[contacts, 3] float")
       .def_property_readonly(
           "normals",
-          [](const SelfCollision::Answer& a) {
+          [](const Answer& a) {
             return rows_of<double>(a.contacts, 3, [](const auto& c, std::size_t k) {
               return c.normal[static_cast<Eigen::Index>(k)];
             });
           },
           "[contacts, 3] float")
-      .def("__repr__", [](const SelfCollision::Answer& a) {
+      .def("__repr__", [](const Answer& a) {
         return "<cscd.Answer: " + std::to_string(a.contacts.size()) + " contacts, " +
                std::to_string(a.start_crossings.size()) + " crossings at the start>";
       });
+  pickle_by(answer, &Answer::start_crossings, &Answer::contacts);
 
   using Crossings = SelfCollision::Crossings;
-  py::class_<Crossings::Curve>(module, "Curve", "A curve in which two sheets of the surface cross.")
-      .def_readonly("closed", &Crossings::Curve::closed)
+  using Curve = Crossings::Curve;
+  py::class_<Curve> curve(module, "Curve", "A curve in which two sheets of the surface cross.");
+  curve.def_readonly("closed", &Curve::closed)
       .def_property_readonly(
-          "faces", [](const Crossings::Curve& c) { return table_of(c.faces); },
+          "faces", [](const Curve& c) { return table_of(c.faces); },
           "[segments, 2] int: the face of one sheet and of the other.")
       .def_property_readonly(
-          "points", [](const Crossings::Curve& c) { return table_of(c.points); },
+          "points", [](const Curve& c) { return table_of(c.points); },
           "[segments, 3] float, or one more row where the curve is not closed: the ends of the segments.");
-  py::class_<Crossings::Region>(module, "Region", "What curves cut off one sheet.")
+  pickle_by(curve, &Curve::faces, &Curve::points, &Curve::closed);
+  using Region = Crossings::Region;
+  py::class_<Region> region(module, "Region", "What curves cut off one sheet.");
+  region
       .def_property_readonly(
-          "bounds", [](const Crossings::Region& r) { return table_of(r.bounds); },
+          "bounds", [](const Region& r) { return table_of(r.bounds); },
           "[bounds, 2] int: a curve of the overlap that bounds it, and the column of that curve's faces on "
           "whose sheet it lies.")
       .def_property_readonly(
-          "vertices", [](const Crossings::Region& r) { return array_of(r.vertices); },
+          "vertices", [](const Region& r) { return array_of(r.vertices); },
           "[vertices] int, from the curves inwards.")
       .def_property_readonly(
-          "distances", [](const Crossings::Region& r) { return array_of(r.distance); },
+          "distances", [](const Region& r) { return array_of(r.distance); },
           "[vertices] float: the lengths of the ways.")
       .def_property_readonly(
-          "ways", [](const Crossings::Region& r) { return table_of(r.way); },
+          "ways", [](const Region& r) { return table_of(r.way); },
           "[vertices, 3] float: from each to the nearest point of what the same curves cut off the other "
           "sheet. A repair moves vertices along their ways.")
-      .def_readonly("area", &Crossings::Region::area)
-      .def_readonly("behind", &Crossings::Region::behind,
+      .def_readonly("area", &Region::area)
+      .def_readonly("behind", &Region::behind,
                     "Whether it lies behind the faces of the other sheet, inside a closed surface. Otherwise "
                     "the surface is turned inside out there, or it is the smaller side of an open one.")
-      .def_readonly("other_is_open", &Crossings::Region::other_is_open,
+      .def_readonly("other_is_open", &Region::other_is_open,
                     "Whether what is cut off the other sheet is not bounded.")
-      .def_readonly("depth", &Crossings::Region::depth, "The largest distance of a vertex.")
-      .def_readonly("depth_bound", &Crossings::Region::depth_bound, "What no point of the region exceeds.")
-      .def_readonly("deepest", &Crossings::Region::deepest, "The vertex with the largest distance.")
-      .def_readonly("out", &Crossings::Region::out,
-                    "The way from there to the nearest point of the other sheet, [3].");
-  py::class_<Crossings::Overlap>(module, "Overlap", "Curves and regions that hang together.")
-      .def_readonly("curves", &Crossings::Overlap::curves, "List of Curve.")
-      .def_readonly("regions", &Crossings::Overlap::regions, "List of Region, deepest first.")
-      .def_readonly("depth", &Crossings::Overlap::depth)
-      .def_readonly("length", &Crossings::Overlap::length, "Of the curves together.")
+      .def_readonly("depth", &Region::depth, "The largest distance of a vertex.")
+      .def_readonly("depth_bound", &Region::depth_bound, "What no point of the region exceeds.")
+      .def_readonly("deepest", &Region::deepest, "The vertex with the largest distance.")
+      .def_readonly("out", &Region::out, "The way from there to the nearest point of the other sheet, [3].");
+  pickle_by(region, &Region::bounds, &Region::vertices, &Region::way, &Region::distance, &Region::area,
+            &Region::behind, &Region::other_is_open, &Region::depth, &Region::depth_bound, &Region::deepest,
+            &Region::out);
+  using Overlap = Crossings::Overlap;
+  py::class_<Overlap> overlap(module, "Overlap", "Curves and regions that hang together.");
+  overlap.def_readonly("curves", &Overlap::curves, "List of Curve.")
+      .def_readonly("regions", &Overlap::regions, "List of Region, deepest first.")
+      .def_readonly("depth", &Overlap::depth)
+      .def_readonly("length", &Overlap::length, "Of the curves together.")
       .def_property_readonly(
-          "vertices", [](const Crossings::Overlap& o) { return array_of(o.vertices); },
+          "vertices", [](const Overlap& o) { return array_of(o.vertices); },
           "[vertices] int, the corners of the edges and faces that pierce each other along the curves.")
       .def_property_readonly(
-          "gradient", [](const Crossings::Overlap& o) { return table_of(o.gradient); },
+          "gradient", [](const Overlap& o) { return table_of(o.gradient); },
           "[vertices, 3] float: of the length. Against it, vertices move to shorten the curves.")
-      .def_readonly("depth_bound", &Crossings::Overlap::depth_bound);
-  py::class_<Crossings>(module, "Crossings", "How a pose crosses itself.")
-      .def_readonly("overlaps", &Crossings::overlaps, "List of Overlap, deepest first.")
+      .def_readonly("depth_bound", &Overlap::depth_bound);
+  pickle_by(overlap, &Overlap::curves, &Overlap::regions, &Overlap::depth, &Overlap::depth_bound,
+            &Overlap::length, &Overlap::vertices, &Overlap::gradient);
+  py::class_<Crossings> crossings(module, "Crossings", "How a pose crosses itself.");
+  crossings.def_readonly("overlaps", &Crossings::overlaps, "List of Overlap, deepest first.")
       .def_readonly("touching", &Crossings::touching,
                     "Pairs of faces that meet without passing through each other.");
+  pickle_by(crossings, &Crossings::overlaps, &Crossings::touching);
 
-  py::class_<SelfCollision::PathsAnswer>(module, "PathsAnswer", "What is known of paths over a span of time.")
+  using PathsAnswer = SelfCollision::PathsAnswer;
+  py::class_<PathsAnswer>(module, "PathsAnswer", "What is known of paths over a span of time.")
+      .def(py::pickle(
+          [](const PathsAnswer& a) {
+            return py::make_tuple(static_cast<int>(a.verdict), a.from, a.to, a.within, a.faces);
+          },
+          [](const py::tuple& state) {
+            return PathsAnswer{static_cast<PathsAnswer::Verdict>(state[0].cast<int>()),
+                               state[1].cast<double>(), state[2].cast<double>(), state[3].cast<double>(),
+                               state[4].cast<std::array<int, 2>>()};
+          }))
       .def_property_readonly(
           "verdict",
-          [](const SelfCollision::PathsAnswer& a) {
+          [](const PathsAnswer& a) {
             constexpr const char* kNames[] = {"clear", "touches", "close", "intersects_at_start",
                                               "undecided"};
             return kNames[static_cast<int>(a.verdict)];
           },
           "clear, touches, close, intersects_at_start or undecided.")
       .def_property_readonly(
-          "span", [](const SelfCollision::PathsAnswer& a) { return py::make_tuple(a.from, a.to); },
+          "span", [](const PathsAnswer& a) { return py::make_tuple(a.from, a.to); },
           "The two times that the verdict is about.")
-      .def_readonly("within", &SelfCollision::PathsAnswer::within, "Of close: the largest such distance.")
-      .def_readonly("faces", &SelfCollision::PathsAnswer::faces, "Two faces that come together, or -1, -1.")
+      .def_readonly("within", &PathsAnswer::within, "Of close: the largest such distance.")
+      .def_readonly("faces", &PathsAnswer::faces, "Two faces that come together, or -1, -1.")
       .def("__repr__", [](const py::object& self) {
         return "<cscd.PathsAnswer: " + std::string(py::str(self.attr("verdict"))) + ", " +
                std::string(py::str(self.attr("span"))) + ">";

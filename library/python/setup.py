@@ -1,23 +1,51 @@
 """Makes the wheel: CMake compiles and installs the module, setuptools packs what CMake installed.
 
-    pip wheel library/python                            compiles the library in build-wheel/cmake, below the repository
-    CSCD_BUILD=build-release pip wheel library/python   takes the module from a build folder of CMake
+    pip wheel library/python                            compiles the library
+    CSCD_BUILD=build-release pip wheel library/python   takes the module from a build folder of CMake, which is named as seen
+                                                        from where pip is called
+
+Work is done in a folder for temporary files, and nothing is written into the sources.
 
 Compiling needs Debian's cmake, g++, libeigen3-dev, libtbb-dev, libgmp-dev, pybind11-dev and python3-dev. The wheel uses the
 libraries oneTBB and GMP of the machine, so it is for systems like the one that made it.
 """
+import atexit
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 
 from setuptools import Distribution, setup
 from setuptools.command.build_ext import build_ext
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-GIVEN = os.environ.get("CSCD_BUILD")
-WORK = pathlib.Path(GIVEN).resolve() / "wheel" if GIVEN else ROOT / "build-wheel"
+WORK = pathlib.Path(tempfile.mkdtemp(prefix="cscd-wheel-"))
+atexit.register(shutil.rmtree, WORK, ignore_errors=True)
+
+
+def given_build():
+    """The build folder that CSCD_BUILD names, or None.
+
+    pip runs this file in the folder of the sources, so a relative name is one that the process which started this one sees.
+    """
+    name = os.environ.get("CSCD_BUILD")
+    if not name:
+        return None
+    try:
+        caller = pathlib.Path(f"/proc/{os.getppid()}/cwd").resolve(strict=True)
+    except OSError:
+        caller = pathlib.Path(os.environ.get("PWD", "."))
+    build = caller / name
+    if not any(build.glob("python/cscd/_cscd*.so")):
+        sys.exit(f"CSCD_BUILD={name}: no Python module in {build}/python; "
+                 f"make it by cmake --build {name} --target cscd_python, or leave CSCD_BUILD unset")
+    return build
+
+
+GIVEN = given_build()
 
 
 class Compiled(Distribution):
@@ -27,7 +55,7 @@ class Compiled(Distribution):
 
 class ByCMake(build_ext):
     def run(self):
-        build = WORK.parent if GIVEN else WORK / "cmake"
+        build = GIVEN or WORK / "cmake"
         if not GIVEN:
             subprocess.run(["cmake", "-S", ROOT, "-B", build, "-DCSCD_LIBRARY_ONLY=ON", "-DCMAKE_BUILD_TYPE=Release",
                             f"-DPYTHON_EXECUTABLE={sys.executable}"], check=True)
@@ -37,8 +65,6 @@ class ByCMake(build_ext):
                        check=True)
 
 
-WORK.mkdir(parents=True, exist_ok=True)
 setup(version=re.search(r"project\(cscd VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1],
       distclass=Compiled, cmdclass={"build_ext": ByCMake},
-      # Nothing is written into the sources.
       options={"build": {"build_base": str(WORK / "packed")}, "egg_info": {"egg_base": str(WORK)}})

@@ -24,6 +24,7 @@ function(cscd_install_library room)
     endforeach()
     set_property(GLOBAL PROPERTY cscd_library_rooms ${rooms})  # those are compiled for each set
     add_library(cscd_dispatch OBJECT ${PROJECT_SOURCE_DIR}/library/dispatch/front.cpp
+                                     ${PROJECT_SOURCE_DIR}/library/standard_library.cpp
                                      ${PROJECT_SOURCE_DIR}/core/base/instruction_set.cpp)
     target_include_directories(cscd_dispatch PRIVATE $<TARGET_PROPERTY:${room},INTERFACE_INCLUDE_DIRECTORIES>)
     target_link_libraries(cscd_dispatch PRIVATE Eigen3::Eigen cscd_flags)

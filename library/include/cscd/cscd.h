@@ -1,5 +1,11 @@
 #pragma once
 
+#if !defined(__cpp_concepts) || __cpp_concepts < 201907L
+#error "cscd/cscd.h needs C++20: compile with -std=c++20 or later"
+#elif !defined(__cpp_exceptions)
+#error "cscd/cscd.h reports errors as exceptions: compile without -fno-exceptions"
+#else
+
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
@@ -11,6 +17,7 @@
 #include <vector>
 
 #include "cscd/matrix_view.h"
+#include "cscd/standard_library.h"
 
 #if defined(__GNUC__)
 #define CSCD_EXPORT __attribute__((visibility("default")))
@@ -51,8 +58,9 @@ namespace cscd {
 // next steps are answered as by any other object.
 //
 // An object may be used by one thread at a time: a call that finds another thread at work throws
-// std::logic_error and changes nothing. Different objects are independent of each other. The
-// constructor copies what it is given; the positions of a step are read during the call alone.
+// std::logic_error and changes nothing, as does a function given to true_motion() that asks the same object.
+// Different objects are independent of each other. The constructor copies what it is given; the positions of
+// a step are read during the call alone.
 class CSCD_EXPORT SelfCollision {
  public:
   // Positions, one row a vertex. A parameter of this type takes any matrix or expression of Eigen, of doubles
@@ -349,3 +357,5 @@ class CSCD_EXPORT SelfCollision {
 CSCD_EXPORT std::string_view instruction_set();
 
 }  // namespace cscd
+
+#endif

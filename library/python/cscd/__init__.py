@@ -7,21 +7,28 @@
 
 Arrays may have any layout and any real type that holds no number which the library cannot hold exactly: an index is
 whole and has at most 32 bits, a position is a number in double precision. Row-major arrays of doubles are read where they
-are. What is wrong raises ValueError with one line.
+are. What is wrong raises ValueError with one line. Answers can be copied and pickled.
 
 read() gives the frames of a character or a point cache through the program `cscd`.
 """
+from __future__ import annotations
+
+import os
 import pathlib
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _cscd
-from ._cscd import Answer, Contact, Crossings, Curve, Overlap, PathsAnswer, Region, instruction_set
+from ._cscd import Answer, Contact, Crossings, Curve, Overlap, PathsAnswer, Region, __version__, instruction_set
 from ._values import INDEX, REAL, as_array, flag, numbers
 
 __all__ = ["Answer", "Contact", "Crossings", "Curve", "Exclusions", "Overlap", "PathsAnswer", "Region", "SelfCollision",
-           "instruction_set", "read"]
+           "__version__", "instruction_set", "read"]
 
 
 def _faces(value, name="faces"):
@@ -56,8 +63,9 @@ class Exclusions(_cscd.Exclusions):
         account of this. Needs check_start.
     """
 
-    def __init__(self, *, rigid=(), group=(), groups_that_ignore_each_other=(), vertex_pairs=(), face_pairs=(), rings=0,
-                 rest_distance=0.0, ongoing=False):
+    def __init__(self, *, rigid: ArrayLike = (), group: ArrayLike = (), groups_that_ignore_each_other: ArrayLike = (),
+                 vertex_pairs: ArrayLike = (), face_pairs: ArrayLike = (), rings: int = 0, rest_distance: float = 0.0,
+                 ongoing: bool = False) -> None:
         marked = as_array(rigid, "exclude, rigid")
         if marked.ndim != 1 or (marked.size and marked.dtype.kind != "b"):
             raise ValueError("exclude, rigid: give one boolean a vertex")
@@ -95,8 +103,10 @@ class SelfCollision(_cscd.SelfCollision):
     One object is used by one thread at a time, and RuntimeError tells a second one so; different objects are independent.
     """
 
-    def __init__(self, faces, reference, *, threads=1, check_positions=True, check_start=True, exclude=None, obstacles=(),
-                 preparation=b"", labels=(), thickness=0.0, vertex_thickness=()):
+    def __init__(self, faces: ArrayLike, reference: ArrayLike, *, threads: int = 1, check_positions: bool = True,
+                 check_start: bool = True, exclude: Exclusions | None = None,
+                 obstacles: Sequence[tuple[ArrayLike, ArrayLike]] = (), preparation: bytes | bytearray | memoryview = b"",
+                 labels: ArrayLike = (), thickness: float = 0.0, vertex_thickness: ArrayLike = ()) -> None:
         if exclude is not None and not isinstance(exclude, Exclusions):
             raise ValueError("exclude: give an object of cscd.Exclusions")
         if not isinstance(preparation, (bytes, bytearray, memoryview)):
@@ -114,30 +124,30 @@ class SelfCollision(_cscd.SelfCollision):
                          float(numbers(thickness, "thickness", REAL)),
                          numbers(vertex_thickness, "vertex_thickness", REAL, "vertices").tolist())
 
-    def place_obstacle(self, obstacle, positions):
+    def place_obstacle(self, obstacle: int, positions: ArrayLike) -> None:
         """Places an obstacle, counted from 0, where it rests in the steps from then on."""
         super().place_obstacle(int(numbers(obstacle, "obstacle", INDEX)), _positions(positions, "positions"))
 
-    def move_obstacle(self, obstacle, start, end):
+    def move_obstacle(self, obstacle: int, start: ArrayLike, end: ArrayLike) -> None:
         """Moves an obstacle from start to end in every step, until it is placed or moved again."""
         super().move_obstacle(int(numbers(obstacle, "obstacle", INDEX)), *_step(start, end))
 
-    def is_free(self, start, end):
+    def is_free(self, start: ArrayLike, end: ArrayLike) -> bool:
         """Returns whether the step is free of contacts, and starts without crossings.
 
         With a thickness, whatever comes within it is a contact.
         """
         return super().is_free(*_step(start, end))
 
-    def first_contact(self, start, end):
+    def first_contact(self, start: ArrayLike, end: ArrayLike) -> Answer:
         """Returns an Answer with contacts of the earliest time, at least one where anything touches."""
         return super().first_contact(*_step(start, end))
 
-    def all_contacts(self, start, end):
+    def all_contacts(self, start: ArrayLike, end: ArrayLike) -> Answer:
         """Returns an Answer with all contacts."""
         return super().all_contacts(*_step(start, end))
 
-    def largest_step(self, start, end, safety=0.9):
+    def largest_step(self, start: ArrayLike, end: ArrayLike, safety: float = 0.9) -> float:
         """Returns a time t in [0, 1] such that nothing touches in [0, t]; 1 for a free step.
 
         Otherwise that is `safety`, in (0, 1], times the earliest time of a contact, rounded down. It is 0 from a start in
@@ -148,14 +158,15 @@ class SelfCollision(_cscd.SelfCollision):
         """
         return super().largest_step(*_step(start, end), float(numbers(safety, "safety", REAL)))
 
-    def candidates(self, start, end, radius):
+    def candidates(self, start: ArrayLike, end: ArrayLike,
+                   radius: float) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         """Returns all pairs that come within the radius.
 
         These are [n, 2] int of a vertex and a face, and [m, 4] int of the ends of two edges.
         """
         return super().candidates(*_step(start, end), float(numbers(radius, "radius", REAL)))
 
-    def vertex_bounds(self, positions, cap):
+    def vertex_bounds(self, positions: ArrayLike, cap: float) -> NDArray[np.float64]:
         """Returns [vertices] float: how far each vertex may move from `positions`, in any direction and along any path.
 
         While all stay within their bounds, no two features that are not excluded come as close as the thickness, and
@@ -165,7 +176,9 @@ class SelfCollision(_cscd.SelfCollision):
         """
         return super().vertex_bounds(_positions(positions, "positions"), float(numbers(cap, "cap", REAL)))
 
-    def true_motion(self, positions, acceleration_bound, start=0.0, end=1.0, *, position_error=0.0, resolution=0.0):
+    def true_motion(self, positions: Callable[[float], ArrayLike], acceleration_bound: Callable[[float, float], ArrayLike],
+                    start: float = 0.0, end: float = 1.0, *, position_error: float = 0.0,
+                    resolution: float = 0.0) -> PathsAnswer:
         """Returns a PathsAnswer for vertices that do not move in straight lines.
 
         positions: a function of a time that returns [vertices, 3] float, at most `position_error` from the true places.
@@ -191,7 +204,7 @@ class SelfCollision(_cscd.SelfCollision):
                                      ((start, "start"), (end, "end"), (position_error, "position_error"),
                                       (resolution, "resolution"))))
 
-    def crossings(self, positions):
+    def crossings(self, positions: ArrayLike) -> Crossings:
         """Returns a Crossings: which pieces of the mesh lie in each other in a pose, how deep, and along which curves.
 
         Obstacles are left out, and so are overlaps of which half of the pairs of faces, or more, are excluded. A piece that
@@ -204,7 +217,8 @@ def _step(start, end):
     return _positions(start, "start positions"), _positions(end, "end positions")
 
 
-def read(path, *options, program="cscd"):
+def read(path: str | os.PathLike[str], *options: str,
+         program: str = "cscd") -> tuple[NDArray[np.int32], NDArray[np.float64]]:
     """Returns (faces, frames) of a model file, a point cache or a scene: [faces, 3] int32, [frames, vertices, 3] float64.
 
     The program `cscd` reads the file in a process of its own. `options` are those of `cscd export`, such as "--clip",

@@ -1,0 +1,3 @@
+#include "cscd/standard_library.h"
+
+extern "C" const char CSCD_CONTAINERS = 0;
