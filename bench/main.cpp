@@ -12,6 +12,7 @@
 #include "bench/cli/command_line/command.h"
 #include "bench/cli/command_line/standard_streams.h"
 #include "bench/cli/command_line/usage.h"
+#include "bench/cli/interface_commands.h"
 #include "bench/cli/output/output.h"
 #include "core/base/error.h"
 #include "core/base/instruction_set.h"
@@ -82,6 +83,8 @@ int run(int argc, char** argv) {
   cscd::bench::add_history(app);
   cscd::bench::add_scene(app);
   cscd::bench::add_help(app);
+  cscd::bench::add_completion(app);
+  cscd::bench::add_manual(app);
   cscd::bench::require_plain_numbers(app);
 
   try {

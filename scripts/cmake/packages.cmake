@@ -13,14 +13,16 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # derives the libraries a package needs from what its binaries link
 set(summary "continuous self-collision detection of deforming triangle meshes")
 
+# cpack installs below a folder of its own, where nothing tells that the prefix will be /usr.
+set(CPACK_CUSTOM_INSTALL_VARIABLES CSCD_PYTHON_FOLDER=lib/python3/dist-packages
+                                   CSCD_ZSH_FOLDER=share/zsh/vendor-completions)
+
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libcscd-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libgmp-dev")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "${summary}: C++ library")
 if(TARGET cscd_python)
   list(APPEND CPACK_COMPONENTS_ALL python)
-  # cpack installs below a folder of its own, where nothing tells that the prefix will be /usr.
-  set(CPACK_CUSTOM_INSTALL_VARIABLES CSCD_PYTHON_FOLDER=lib/python3/dist-packages)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-cscd)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   # A module is for one minor version of Python.

@@ -4,7 +4,7 @@
 
 packages_build=(g++ cmake ninja-build git libeigen3-dev nlohmann-json3-dev libcli11-dev libvalijson-dev libhdf5-dev
                 libgmp-dev libtbb-dev libassimp-dev libtinygltf-dev libmeshoptimizer-dev libdraco-dev zlib1g-dev
-                libpugixml-dev libcgal-dev libssl-dev libgtest-dev help2man python3)
+                libpugixml-dev libcgal-dev libssl-dev libgtest-dev python3)
 # The viewer's bundler. Whoever has a Node already keeps it.
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then packages_build+=(nodejs npm); fi
 packages_compare=(libembree-dev libfcl-dev)
