@@ -224,7 +224,7 @@ def read(path: str | os.PathLike[str], *options: str,
     The program `cscd` reads the file in a process of its own. `options` are those of `cscd export`, such as "--clip",
     "walk". Needs h5py. Raises ValueError where the file cannot be read, FileNotFoundError where there is no program.
     """
-    import h5py
+    import h5py  # type: ignore[import]  # it declares no types
 
     if shutil.which(program) is None:
         raise FileNotFoundError(f"{program}: no such program; install the component `program` or pass program=")
