@@ -71,10 +71,10 @@ def main():
             if not real and generator != "Ninja":
                 results.append(("the whole project", built(environment, generator, tree, [],
                                                            (*LIBRARY, "cscd", "cscd-avx2", "cscd-import", "library_test"))))
+            release = ["-DCMAKE_DEFAULT_BUILD_TYPE=Release"] if "Multi" in generator else []  # what a project of a user's own builds
             for way, takes in [] if real else WAYS.items():
                 (work / "outer" / "CMakeLists.txt").write_text(OUTER.format(takes=takes))
-                results.append((way, built(environment, generator, work / "outer", [f"-DWAY={way}", "-DCMAKE_DEFAULT_BUILD_TYPE=Release"],
-                                           ("outer",))))
+                results.append((way, built(environment, generator, work / "outer", [f"-DWAY={way}", *release], ("outer",))))
             for what, wrong in results:
                 failed |= bool(wrong)
                 print(f"{generator}, {what}: {wrong or 'builds'}", flush=True)
