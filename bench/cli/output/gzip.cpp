@@ -23,10 +23,14 @@ z_stream stream_over(std::string_view bytes) {
   return stream;
 }
 
-std::string compressed(std::string_view bytes, int level, int window) {
-  z_stream stream = stream_over(bytes);
+void begin_to_compress(z_stream& stream, int level, int window) {
   if (deflateInit2(&stream, level, Z_DEFLATED, window, 9, Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::runtime_error("zlib cannot begin to compress");
+}
+
+std::string compressed(std::string_view bytes, int level, int window) {
+  z_stream stream = stream_over(bytes);
+  begin_to_compress(stream, level, window);
   std::string out(deflateBound(&stream, static_cast<uLong>(bytes.size())), '\0');
   stream.next_out = reinterpret_cast<Bytef*>(out.data());
   stream.avail_out = static_cast<uInt>(out.size());
@@ -38,6 +42,35 @@ std::string compressed(std::string_view bytes, int level, int window) {
 }
 
 }  // namespace
+
+struct GzipStream::State {
+  z_stream stream{};
+};
+
+GzipStream::GzipStream() : state_(std::make_unique<State>()) {
+  begin_to_compress(state_->stream, Z_BEST_COMPRESSION, kGzipWindow);
+}
+
+GzipStream::~GzipStream() {
+  deflateEnd(&state_->stream);
+}
+
+std::string GzipStream::add(std::string_view piece, bool is_last) {
+  z_stream& stream = state_->stream;
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(piece.data()));
+  stream.avail_in = static_cast<uInt>(piece.size());
+  std::string out;
+  do {
+    const std::size_t before = out.size();
+    out.resize(before + kBlock);
+    stream.next_out = reinterpret_cast<Bytef*>(out.data() + before);
+    stream.avail_out = static_cast<uInt>(kBlock);
+    if (deflate(&stream, is_last ? Z_FINISH : Z_NO_FLUSH) == Z_STREAM_ERROR)
+      throw std::runtime_error("zlib cannot compress");
+    out.resize(before + kBlock - stream.avail_out);
+  } while (stream.avail_out == 0);
+  return out;
+}
 
 std::string gzipped(std::string_view text) {
   return compressed(text, Z_BEST_COMPRESSION, kGzipWindow);

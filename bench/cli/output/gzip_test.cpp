@@ -20,6 +20,12 @@ TEST(Gzip, GivesBackWhatItWasGivenAndTheSameBytesEachTime) {
     const std::string text = text_of(bytes), packed = gzipped(text);
     EXPECT_EQ(without_gzip(packed, "a", kMost), text);
     EXPECT_EQ(gzipped(text), packed);
+    GzipStream stream;
+    std::string pieces;
+    for (std::size_t at = 0; at < text.size(); at += 70'000)
+      pieces += stream.add(std::string_view(text).substr(at, 70'000), false);
+    pieces += stream.add({}, true);
+    EXPECT_EQ(pieces, packed);
   }
   EXPECT_LT(gzipped(text_of(300'000)).size(), 10'000u);
 }

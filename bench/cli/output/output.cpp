@@ -8,7 +8,6 @@
 #include <string>
 #include <unistd.h>
 
-#include "bench/cli/output/gzip.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {
@@ -30,16 +29,6 @@ int take_standard_output() {
                    "); choose another place");
 }
 
-void write_to_stream(const std::filesystem::path& path, std::string_view content) {
-  const int stream = open(path.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
-  if (stream < 0) fail(path);
-  const bool good = write_all(stream, content);
-  const int reason = errno;
-  close(stream);
-  errno = reason;
-  if (!good) fail(path);
-}
-
 }  // namespace
 
 bool is_standard_output(const std::filesystem::path& path) {
@@ -53,33 +42,60 @@ OutputFile::OutputFile(std::filesystem::path path, bool force, std::string_view 
     return;
   }
   const OutputTarget target = find_output_target(path_, force);
-  is_stream_ = target.is_stream;
-  if (is_stream_) {
+  if (target.is_stream) {
     if (access(path_.c_str(), W_OK) != 0) fail(path_);
     return;
   }
-  is_compressed_ = path_.extension() == ".gz";
-  const std::filesystem::path named = is_compressed_ ? path_.parent_path() / path_.stem() : path_;
+  const bool is_compressed = path_.extension() == ".gz";
+  const std::filesystem::path named = is_compressed ? path_.parent_path() / path_.stem() : path_;
   if (named.has_extension()) require_format(named, std::span(&extension, 1));
   file_.emplace(target.path, force);
+  if (is_compressed) gzip_.emplace();
 }
 
 OutputFile::~OutputFile() {
   if (standard_output_ >= 0) close(standard_output_);
 }
 
-void OutputFile::commit(std::string_view content) {
-  if (standard_output_ >= 0) {
-    if (write_all(standard_output_, content)) return;
-    if (errno == EPIPE) throw NobodyReads();
-    fail(path_);
-  }
-  if (is_stream_) {
-    write_to_stream(path_, content);
+void OutputFile::write(std::string_view piece) {
+  if (file_) {
+    file_->write(gzip_ ? gzip_->add(piece, false) : piece);
     return;
   }
-  file_->write(is_compressed_ ? gzipped(content) : content);
-  file_->finish();
+  if (!waiting_) waiting_.reset(std::tmpfile());
+  if (!waiting_ || std::fwrite(piece.data(), 1, piece.size(), waiting_.get()) != piece.size())
+    throw InputError("output " + path_.string() + ": there is no room for it among temporary files (" +
+                     std::strerror(errno) + "); name a file instead");
+}
+
+void OutputFile::copy_to(int descriptor) {
+  std::string room(std::size_t{1} << 16, '\0');
+  if (!waiting_) return;
+  std::rewind(waiting_.get());
+  while (const std::size_t count = std::fread(room.data(), 1, room.size(), waiting_.get())) {
+    if (write_all(descriptor, std::string_view(room).substr(0, count))) continue;
+    if (descriptor == standard_output_ && errno == EPIPE) throw NobodyReads();
+    const int reason = errno;
+    if (descriptor != standard_output_) close(descriptor);
+    errno = reason;
+    fail(path_);
+  }
+}
+
+void OutputFile::commit() {
+  if (file_) {
+    if (gzip_) file_->write(gzip_->add({}, true));
+    file_->finish();
+    return;
+  }
+  if (standard_output_ >= 0) {
+    copy_to(standard_output_);
+    return;
+  }
+  const int stream = open(path_.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
+  if (stream < 0) fail(path_);
+  copy_to(stream);
+  close(stream);
 }
 
 std::string require_format(const std::filesystem::path& output, std::span<const std::string_view> known) {

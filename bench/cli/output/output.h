@@ -1,12 +1,15 @@
 #pragma once
 
+#include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "bench/cli/output/gzip.h"
 #include "scenes/base/output_target.h"
 
 namespace cscd::bench {
@@ -32,14 +35,28 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  // Throws InputError if the place does not take it, NobodyReads if it is a standard output that was closed.
-  void commit(std::string_view content);
+  // Takes the next piece of the content. Standard output, devices and pipes get nothing before the end.
+  // Throws InputError if the place does not take it.
+  void write(std::string_view piece);
+  // Ends the content. Throws as write() does, and NobodyReads for a standard output that was closed.
+  void commit();
+  // The whole content at once.
+  void commit(std::string_view content) {
+    write(content);
+    commit();
+  }
 
  private:
+  struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  void copy_to(int descriptor);
+
   std::filesystem::path path_;
-  bool is_stream_ = false, is_compressed_ = false;
   int standard_output_ = -1;
   std::optional<UnfinishedFile> file_;
+  std::optional<GzipStream> gzip_;
+  std::unique_ptr<std::FILE, CloseFile> waiting_;  // for a place that gets nothing before the end
 };
 
 // Whether an output's name stands for standard output.
