@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/base/sort_unique.h"
-#include "core/crossing/disjoint_sets.h"
+#include "core/base/disjoint_sets.h"
 #include "core/crossing/self_winding.h"
 
 namespace cscd {

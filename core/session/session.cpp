@@ -59,14 +59,17 @@ Session::Session(const std::string& name, const StrategyInput& setup, const Stra
 void Session::find_rest_crossings(const std::string& name, std::span<const Vec3> rest) {
   const Stopwatch searching;
   if (!options_.ignore_starts) find_crossings(rest, nullptr);
-  rest_ = starts_.crossings();
+  rest_.crossing = starts_.crossings();
+  if (!options_.keep_rest_crossings) {
+    if (rest_.crossing.all_kept()) rest_ = tell_meetings_apart(setup_.mesh, rest, rest_.crossing);
+    if (rest_.crossing.total > kMostLeftOut)
+      throw InputError(
+          name + ": " + std::to_string(rest_.crossing.total) +
+          " pairs of triangles cross at rest, too many to leave out; repair the surface, or pass "
+          "--keep-rest-crossings");
+    left_out_ = RestCrossings(setup_.mesh, rest_.crossing);
+  }
   rest_ms_ = searching.milliseconds();
-  if (options_.keep_rest_crossings) return;
-  if (rest_.total > kMostLeftOut)
-    throw InputError(name + ": " + std::to_string(rest_.total) +
-                     " pairs of triangles cross at rest, too many to leave out; repair the surface, or pass "
-                     "--keep-rest-crossings");
-  left_out_ = RestCrossings(setup_.mesh, rest_);
 }
 
 Session::PreparedStrategy Session::make(const Strategy& strategy) const {
@@ -192,6 +195,7 @@ void Session::say_start(StepAnswer& out) {
     out.start.total -= std::erase_if(out.start.pairs, [&](const CrossingPair& pair) {
       return setup_.exclusions->excludes(setup_.mesh, TrianglePair{pair.first, pair.second});
     });
+  left_out_.follow(starts_.crossings());
   out.ignored_pairs.clear();
   out.explained_pairs.clear();
   out.start.total -= std::erase_if(out.start.pairs, [&](const CrossingPair& pair) {

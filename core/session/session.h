@@ -17,7 +17,8 @@ namespace cscd {
 
 // The answer to one step. Contacts and crossings that the caller ignores stand in lists of their own, and
 // those that crossings at rest explain (see RestCrossings) are left out of everything but the two counts that
-// say so.
+// say so. What crosses at rest and has parted in the meantime is no longer left out, so answers depend on the
+// steps before.
 struct StepAnswer {
   ContactSet found;               // sorted
   Crossings start;                // pairs of triangles that cross at the start
@@ -88,8 +89,11 @@ class Session {
   double preparation_ms() const { return preparation_ms_ + rest_ms_; }
   // How many triangles the preparation of the set-up did not know.
   std::size_t new_triangles() const { return main_.new_triangles; }
-  // The triangles that cross at rest. They are left out of answers unless the options keep them.
-  const Crossings& rest_crossings() const { return rest_; }
+  // The triangles that cross at rest, which are left out of answers until they part; and those that only
+  // touch at rest, which are not left out. Where the options keep everything, all that meet at rest count as
+  // crossing.
+  const Crossings& rest_crossings() const { return rest_.crossing; }
+  const Crossings& rest_touching() const { return rest_.touching; }
   int threads() const { return main_.threads; }
 
  private:
@@ -135,7 +139,7 @@ class Session {
   double preparation_ms_ = 0;  // of the strategy
   KnownStarts starts_;
   double rest_ms_ = 0;  // that the search of the pose at rest took
-  Crossings rest_;
+  Meetings rest_;
   RestCrossings left_out_;
   bool touched_last_ = false;  // something did in the step before
   bool any_contact_ = false;   // one is enough, whichever it is

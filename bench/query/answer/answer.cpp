@@ -1,5 +1,7 @@
 #include "bench/query/answer/answer.h"
 
+#include <algorithm>
+
 #include "bench/measure/strategies/catalogue.h"
 
 namespace cscd::bench {
@@ -36,6 +38,16 @@ IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick) {
   return answer.found.contacts.empty() ? IntervalVerdict::clear : IntervalVerdict::undecided;
 }
 
+Crossings all_crossings(const IntervalAnswer& answer) {
+  Crossings all = answer.start;
+  for (const std::vector<CrossingPair>* more : {&answer.explained_pairs, &answer.ignored_pairs}) {
+    all.pairs.insert(all.pairs.end(), more->begin(), more->end());
+    all.total += more->size();
+  }
+  std::ranges::sort(all.pairs);
+  return all;
+}
+
 Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
                    const AnswerOptions& options)
     : input_(input),
@@ -52,16 +64,31 @@ void Answerer::tell_touching_from_close(const Motion& motion, IntervalAnswer& an
   }
 }
 
-IntervalAnswer Answerer::answer(std::size_t index) {
+IntervalAnswer Answerer::answer_step(const Motion& motion, const Rig::Interval* bones) {
   IntervalAnswer answer;
-  answer.index = index;
+  session_.step(motion, bones, answer);
+  const bool is_thick = input_.thickness.length > 0;
+  if (is_thick) tell_touching_from_close(motion, answer);
+  answer.verdict = verdict_of(answer, is_thick);
+  return answer;
+}
+
+IntervalAnswer Answerer::answer(std::size_t index) {
   const Stopwatch loading;
   const scenes::ClipInterval interval = input_.clip->load(index);
-  answer.load_ms = loading.milliseconds();
-  session_.step(interval.motion, interval.bones ? &*interval.bones : nullptr, answer);
-  const bool is_thick = input_.thickness.length > 0;
-  if (is_thick) tell_touching_from_close(interval.motion, answer);
-  answer.verdict = verdict_of(answer, is_thick);
+  const double load_ms = loading.milliseconds();
+  IntervalAnswer answer = answer_step(interval.motion, interval.bones ? &*interval.bones : nullptr);
+  answer.index = index;
+  answer.load_ms = load_ms;
+  return answer;
+}
+
+IntervalAnswer Answerer::pose(std::size_t frame) {
+  const scenes::FrameView view = input_.clip->load_frame(frame);
+  const Rig::Interval bones{view.bones, view.bones};
+  IntervalAnswer answer =
+      answer_step(Motion(view.positions, view.positions), view.bones.empty() ? nullptr : &bones);
+  answer.index = frame;
   return answer;
 }
 

@@ -42,6 +42,9 @@ struct IntervalAnswer : StepAnswer {
 // The verdict that goes by what the answer holds.
 IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick);
 
+// Everything that crosses at the start, whether it is left out of the answer or not.
+Crossings all_crossings(const IntervalAnswer& answer);
+
 using AnswerOptions = SessionOptions;
 
 // Answers the intervals of an input, best in growing order (see Session).
@@ -54,6 +57,9 @@ class Answerer {
            const AnswerOptions& options);
 
   IntervalAnswer answer(std::size_t interval);
+  // Answers a frame as an interval in which nothing moves, best after the interval that ends there: what
+  // crosses in the frame is what its answer says of the start.
+  IntervalAnswer pose(std::size_t frame);
 
   // Returns what preparing the strategy has found out; empty where it saves nothing.
   std::vector<std::byte> saved_preparation() const { return session_.saved_preparation(); }
@@ -61,11 +67,14 @@ class Answerer {
   double preparation_ms() const { return session_.preparation_ms(); }
   // How many triangles the preparation of the input did not know.
   std::size_t new_triangles() const { return session_.new_triangles(); }
-  // The triangles that cross at rest. They are left out of answers unless the options keep them.
+  // The triangles that cross at rest, which are left out of answers until they part, and those that only
+  // touch there, which are not (Session).
   const Crossings& rest_crossings() const { return session_.rest_crossings(); }
+  const Crossings& rest_touching() const { return session_.rest_touching(); }
   int threads() const { return session_.threads(); }
 
  private:
+  IntervalAnswer answer_step(const Motion& motion, const Rig::Interval* bones);
   void tell_touching_from_close(const Motion& motion, IntervalAnswer& answer) const;
 
   Input& input_;

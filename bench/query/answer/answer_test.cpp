@@ -46,9 +46,10 @@ void expect_right(Input& input, const Strategy& strategy, const AnswerOptions& o
   Answerer answerer(input, strategy, exact(), options);
   const std::unique_ptr<Detector> reference = complete_reference().make(input.setup(exact())).detector;
   EmbeddingTest looked(input.mesh, input.reference);
-  const RestCrossings rest = options.keep_rest_crossings
-                                 ? RestCrossings()
-                                 : RestCrossings(input.mesh, looked.find_all(input.rest(), kAll));
+  RestCrossings rest;
+  if (!options.keep_rest_crossings)
+    rest = {input.mesh,
+            tell_meetings_apart(input.mesh, input.rest(), looked.find_all(input.rest(), kAll)).crossing};
   for (std::size_t i = range.first; i < range.last; ++i) {
     const IntervalAnswer answer = answerer.answer(i);
     ++verdicts[static_cast<std::size_t>(answer.verdict)];
@@ -56,6 +57,7 @@ void expect_right(Input& input, const Strategy& strategy, const AnswerOptions& o
     Crossings start = looked.find_all(interval.motion.start(), kAll);
     EXPECT_EQ(answer.starts_embedded, start.total == 0) << i;
     EXPECT_EQ(answer.start.total + answer.rest_pairs, start.total) << i;
+    rest.follow(start);
     std::erase_if(start.pairs, [&](const CrossingPair& pair) { return rest.explains(pair); });
     ASSERT_EQ(answer.start.pairs, start.pairs) << i;
 
@@ -166,14 +168,21 @@ TEST(Answerer, TakesARestPoseThatIsNotAFrame) {
   const test::Shape balls =
       test::together(test::icosphere(1), test::moved(test::icosphere(1), {0.9, 0, 0}, 0.4));
   const std::size_t second = balls.positions.size() / 2;
-  Input input = input_of(balls, {moved_part(balls, second, {5, 0, 0}), balls.positions, balls.positions},
-                         balls.positions);
+  const std::vector<Vec3> apart = moved_part(balls, second, {5, 0, 0}),
+                          near_rest = moved_part(balls, second, {0.01, 0, 0});
+  Input input = input_of(balls, {near_rest, balls.positions, apart, balls.positions}, balls.positions);
   Answerer answerer(input, strategy_named("drvbc_fast_complete"), exact(), {});
   EXPECT_GT(answerer.rest_crossings().total, 10u);
-  EXPECT_EQ(answerer.answer(0).verdict, IntervalVerdict::clear) << "it flies to where it rests";
-  EXPECT_GT(answerer.answer(0).rest_contacts, 0u);
-  EXPECT_EQ(answerer.answer(1).verdict, IntervalVerdict::clear);
-  EXPECT_GT(answerer.answer(1).rest_pairs, 10u);
+  for (const std::size_t interval : {0u, 1u}) {
+    const IntervalAnswer answer = answerer.answer(interval);
+    EXPECT_EQ(answer.verdict, IntervalVerdict::clear) << interval;
+    EXPECT_GT(answer.rest_pairs, 10u) << interval;
+    EXPECT_EQ(answer.rest_contacts > 0, interval == 1) << "it flies away from there";
+  }
+  EXPECT_EQ(answerer.answer(2).verdict, IntervalVerdict::touches)
+      << "it has parted, and flies to where it rests";
+  EXPECT_EQ(answerer.pose(3).verdict, IntervalVerdict::intersects_at_start);
+  EXPECT_EQ(answerer.pose(3).rest_pairs, 0u);
 }
 
 // Coplanar triangles that slide onto each other: boxes without end, cut off after a few.

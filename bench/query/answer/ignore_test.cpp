@@ -95,14 +95,17 @@ void expect_right(Input& input, const IgnoreRequest& request, const Strategy& st
   Answerer answerer(input, strategy, filtered(), options);
   const std::unique_ptr<Detector> reference = complete_reference().make(input.setup(filtered())).detector;
   EmbeddingTest looked(input.mesh, input.reference);
-  const RestCrossings rest = options.keep_rest_crossings
-                                 ? RestCrossings()
-                                 : RestCrossings(input.mesh, looked.find_all(input.rest(), kAllCrossings));
+  RestCrossings rest;
+  if (!options.keep_rest_crossings)
+    rest = {
+        input.mesh,
+        tell_meetings_apart(input.mesh, input.rest(), looked.find_all(input.rest(), kAllCrossings)).crossing};
   for (std::size_t i = 0; i < input.clip->interval_count(); ++i) {
     const IntervalAnswer answer = answerer.answer(i);
     const scenes::ClipInterval interval = input.clip->load(i);
     Crossings start = looked.find_all(interval.motion.start(), kAllCrossings);
     EXPECT_EQ(answer.starts_embedded, start.total == 0) << i;
+    rest.follow(start);
     const std::size_t ignored_pairs =
         std::erase_if(start.pairs, [&](const CrossingPair& pair) { return oracle.ignores(pair); });
     EXPECT_EQ(answer.ignored_pairs.size(), ignored_pairs) << i;

@@ -1,6 +1,14 @@
 #include "core/detect/start/crossings.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "core/base/sort_unique.h"
+#include "core/elementary/exact/static_contact.h"
 
 namespace cscd {
 namespace {
@@ -8,6 +16,42 @@ namespace {
 std::span<const TriangleId> triangles_with_first(const TriangleMesh& mesh, const FeaturePair& pair) {
   if (pair.kind == FeaturePair::Kind::vertex_face) return mesh.triangles_at(VertexId{pair.a});
   return mesh.triangles_at(EdgeId{pair.a});
+}
+
+using ComponentPair = std::pair<std::int32_t, std::int32_t>;
+
+ComponentPair components_of(const TriangleMesh& mesh, const CrossingPair& pair) {
+  return std::minmax(mesh.component(pair.first), mesh.component(pair.second));
+}
+
+// The pairs of components of which one is a copy of the other, or of a part of it, in the same place.
+std::set<ComponentPair> copied_components(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                                          const Crossings& met) {
+  const auto places = [&](TriangleId t) {
+    std::array<std::array<double, 3>, 3> out;
+    for (std::size_t k = 0; k < 3; ++k) std::ranges::copy(positions[+mesh.corners(t)[k]], out[k].begin());
+    std::ranges::sort(out);
+    return out;
+  };
+  std::map<ComponentPair, std::array<std::vector<TriangleId>, 2>> twins;  // of the first and of the second
+  for (const CrossingPair& pair : met.pairs) {
+    const ComponentPair both = components_of(mesh, pair);
+    if (both.first == both.second || places(pair.first) != places(pair.second)) continue;
+    const bool is_first = mesh.component(pair.first) == both.first;
+    twins[both][0].push_back(is_first ? pair.first : pair.second);
+    twins[both][1].push_back(is_first ? pair.second : pair.first);
+  }
+  if (twins.empty()) return {};
+  std::map<std::int32_t, std::size_t> size;  // of components, in triangles
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
+    ++size[mesh.component(TriangleId{static_cast<std::int32_t>(t)})];
+  std::set<ComponentPair> copies;
+  for (auto& [both, sides] : twins) {
+    for (std::vector<TriangleId>& side : sides) sort_unique(side);
+    if (sides[0].size() == size.at(both.first) || sides[1].size() == size.at(both.second))
+      copies.insert(both);
+  }
+  return copies;
 }
 
 }  // namespace
@@ -20,6 +64,20 @@ std::vector<CrossingPair> carriers(const TriangleMesh& mesh, const FeaturePair& 
   for (const TriangleId s : triangles_with_first(mesh, pair))
     for (const TriangleId t : others)
       if (s != t) out.emplace_back(std::min(s, t), std::max(s, t));
+  return out;
+}
+
+Meetings tell_meetings_apart(const TriangleMesh& mesh, std::span<const Vec3> positions,
+                             const Crossings& met) {
+  const std::set<ComponentPair> copies = copied_components(mesh, positions, met);
+  Meetings out;
+  for (const CrossingPair& pair : met.pairs) {
+    const bool crosses = triangles_cross(mesh, positions, pair.first, pair.second) ||
+                         copies.contains(components_of(mesh, pair));
+    (crosses ? out.crossing : out.touching).pairs.push_back(pair);
+  }
+  out.crossing.total = out.crossing.pairs.size();
+  out.touching.total = out.touching.pairs.size();
   return out;
 }
 

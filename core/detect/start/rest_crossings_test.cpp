@@ -77,5 +77,59 @@ TEST(RestCrossings, InsideOneComponentExplainThePairsAlone) {
   EXPECT_EQ(explained, 0u);
 }
 
+// The eye leaves its socket and comes back. Mutations: follow() forgets nothing; it takes the shifted line of
+// a crossing for a parting.
+TEST(RestCrossings, ExplainNothingThatHasPartedInTheMeantime) {
+  Eye eye;
+  const Crossings at_rest = eye.test.find_all(eye.shape.positions, kAllPairs);
+  RestCrossings rest(eye.mesh, at_rest);
+  const std::vector<Vec3> shifted = eye.moved({0.02, 0.01, 0}), apart = eye.moved({2, 0, 0});
+  for (int turn = 0; turn < 3; ++turn)
+    for (const std::vector<Vec3>& pose : {shifted, eye.shape.positions}) {
+      rest.follow(eye.test.find_all(pose, kAllPairs));
+      ASSERT_EQ(eye.unexplained(rest, pose), 0u) << turn;
+    }
+  Crossings unknown = eye.test.find_all(apart, kAllPairs);
+  unknown.total = 1;  // none of which is kept
+  rest.follow(unknown);
+  EXPECT_EQ(eye.unexplained(rest, shifted), 0u) << "nothing is known to have parted";
+  rest.follow(eye.test.find_all(apart, kAllPairs));
+  EXPECT_EQ(eye.unexplained(rest, eye.shape.positions), at_rest.total);
+}
+
+// One half of what crosses parts: the other half goes on being explained.
+TEST(RestCrossings, PartPlaceByPlace) {
+  const test::Shape head = test::icosphere(3), ball = test::moved(test::icosphere(2), {0.9, 0, 0}, 0.3);
+  const test::Shape face = test::together(test::together(head, ball), test::moved(ball, {-1.8, 0, 0}));
+  const TriangleMesh mesh = face.mesh();
+  EmbeddingTest test(mesh, face.positions);
+  RestCrossings rest(mesh, test.find_all(face.positions, kAllPairs));
+  std::vector<Vec3> one_out = face.positions;
+  for (std::size_t v = head.positions.size() + ball.positions.size(); v < one_out.size(); ++v)
+    one_out[v] -= Vec3(1, 0, 0);
+  rest.follow(test.find_all(one_out, kAllPairs));
+  const Crossings again = test.find_all(face.positions, kAllPairs);
+  std::size_t explained = 0;
+  for (const CrossingPair& pair : again.pairs) explained += rest.explains(pair);
+  EXPECT_EQ(explained, test.find_all(one_out, kAllPairs).total);
+  EXPECT_LT(explained, again.total);
+}
+
+// A box on a box, an eye in a socket: told apart pair by pair.
+TEST(Meetings, AreToldApartByWhetherTrianglesPassThroughEachOther) {
+  const test::Shape ball = test::octahedron();
+  // Two octahedra of radius 1 share one corner's place, then overlap by half of it.
+  for (const double distance : {2.0, 1.5}) {
+    const test::Shape both = test::together(ball, test::moved(ball, {distance, 0, 0}));
+    const TriangleMesh mesh = both.mesh();
+    const Crossings met = EmbeddingTest(mesh, both.positions).find_all(both.positions, kAllPairs);
+    ASSERT_GT(met.total, 0u) << distance;
+    const Meetings kinds = tell_meetings_apart(mesh, both.positions, met);
+    EXPECT_EQ(kinds.crossing.total + kinds.touching.total, met.total);
+    EXPECT_EQ(kinds.crossing.total > 0, distance < 2) << distance;
+    EXPECT_TRUE(kinds.crossing.all_kept() && kinds.touching.all_kept());
+  }
+}
+
 }  // namespace
 }  // namespace cscd

@@ -178,6 +178,21 @@ struct Frame {
   }
 };
 
+using Triple = std::array<Vec3, 3>;
+
+// Whether the corners of `other` lie strictly on both sides of the plane of `plane`. If so, turns `other` so
+// that its first corner is alone on its side, and `plane` so that this side is the positive one.
+bool part_by_plane(Triple& plane, Triple& other) {
+  std::array<int, 3> side;
+  for (std::size_t k = 0; k < 3; ++k) side[k] = orientation(plane[0], plane[1], plane[2], other[k]);
+  const auto [least, most] = std::ranges::minmax(side);
+  if (least >= 0 || most <= 0) return false;
+  const int alone = std::ranges::count(side, 1) == 1 ? 1 : -1;
+  std::ranges::rotate(other, other.begin() + (std::ranges::find(side, alone) - side.begin()));
+  if (alone < 0) std::swap(plane[1], plane[2]);
+  return true;
+}
+
 }  // namespace
 
 int certain_side(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
@@ -238,6 +253,20 @@ bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, T
   const Frame frame{mesh, positions};
   if (frame.beside(a, b) || frame.beside(b, a)) return false;
   return frame.reaches(a, b) || frame.reaches(b, a);
+}
+
+// Each triangle cuts the line in which the planes meet along a segment. After both are turned, the signs of
+// two volumes tell the order of the four ends on that line (Guigue and Devillers 2003, "Fast and robust
+// triangle-triangle overlap test using orientation predicates"). Strict signs leave out segments that share
+// one point alone.
+bool triangles_cross(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId a, TriangleId b) {
+  const auto corners = [&](TriangleId t) {
+    const Triangle& c = mesh.corners(t);
+    return Triple{positions[+c[0]], positions[+c[1]], positions[+c[2]]};
+  };
+  Triple p = corners(a), q = corners(b);
+  if (!part_by_plane(q, p) || !part_by_plane(p, q)) return false;
+  return orientation(p[0], p[1], q[0], q[1]) < 0 && orientation(p[0], p[2], q[2], q[0]) < 0;
 }
 
 }  // namespace cscd

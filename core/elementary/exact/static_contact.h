@@ -27,4 +27,9 @@ bool segment_touches_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const
 // edges they share. Exact.
 bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId a, TriangleId b);
 
+// Whether two triangles of a mesh pass through each other: each has corners strictly on both sides of the
+// other's plane, and they share more than one point. Triangles that meet without passing through each other
+// only touch. Exact.
+bool triangles_cross(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId a, TriangleId b);
+
 }  // namespace cscd

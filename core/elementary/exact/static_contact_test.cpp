@@ -1,8 +1,10 @@
 #include "core/elementary/exact/static_contact.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <optional>
 #include <random>
 #include <sstream>
 #include <string>
@@ -340,6 +342,53 @@ TEST(TrianglesMeet, AsTheirFeaturesDoOnACoarseGrid) {
   }
   EXPECT_GT(meeting, 10'000u);
   EXPECT_GT(apart, 10'000u);
+}
+
+// The segment in which a triangle cuts the plane of another, as places along the line where both planes meet;
+// exact up to rounding for small integers. Nothing where it has no corners on both sides of that plane.
+std::optional<std::array<double, 2>> cut(const std::array<Vec3, 3>& t, const std::array<Vec3, 3>& plane,
+                                         const Vec3& along) {
+  const Vec3 normal = (plane[1] - plane[0]).cross(plane[2] - plane[0]);
+  std::array<double, 3> side;
+  for (std::size_t k = 0; k < 3; ++k) side[k] = normal.dot(t[k] - plane[0]);
+  if (*std::ranges::min_element(side) >= 0 || *std::ranges::max_element(side) <= 0) return std::nullopt;
+  double low = 1e300, high = -1e300;
+  const auto add = [&](double at) { low = std::min(low, at), high = std::max(high, at); };
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t next = (k + 1) % 3;
+    if (side[k] == 0) add(along.dot(t[k]));
+    if (side[k] * side[next] < 0) add(along.dot(t[k] + side[k] / (side[k] - side[next]) * (t[next] - t[k])));
+  }
+  return std::array{low, high};
+}
+
+// Mutations: signs that are not strict; a corner on a plane counted as beyond it; a plane that is not turned.
+TEST(TrianglesCross, IfTheyShareASegmentThatIsNoPoint) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> small(0, 3);
+  const auto point = [&] { return Vec3(small(random), small(random), small(random)); };
+  std::size_t crossing = 0, touching = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    const bool neighbours = i % 3 == 0;
+    std::vector<Vec3> x{point(), point(), point(), point(), point(), point()};
+    if (neighbours) x[3] = x[0];
+    const Triangle first{VertexId{0}, VertexId{1}, VertexId{2}},
+        second{VertexId{neighbours ? 0 : 3}, VertexId{4}, VertexId{5}};
+    const TriangleMesh mesh(std::vector{first, second}, 6);
+    const std::array<Vec3, 3> a{x[0], x[1], x[2]}, b{x[3], x[4], x[5]};
+    const Vec3 along = (a[1] - a[0]).cross(a[2] - a[0]).cross((b[1] - b[0]).cross(b[2] - b[0]));
+    const auto one = cut(a, b, along), other = cut(b, a, along);
+    const bool expected =
+        one && other && std::max((*one)[0], (*other)[0]) + 1e-9 < std::min((*one)[1], (*other)[1]);
+    ASSERT_EQ(triangles_cross(mesh, x, TriangleId{0}, TriangleId{1}), expected) << i;
+    ASSERT_EQ(triangles_cross(mesh, x, TriangleId{1}, TriangleId{0}), expected) << i;
+    const bool meet = triangles_meet(mesh, x, TriangleId{0}, TriangleId{1});
+    ASSERT_TRUE(meet || !expected) << i;
+    crossing += expected;
+    touching += meet && !expected;
+  }
+  EXPECT_GT(crossing, 5000u);
+  EXPECT_GT(touching, 5000u);
 }
 
 }  // namespace
