@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/rounding.h"
@@ -25,6 +26,8 @@ constexpr double kRoom = 1.25;
 constexpr int kWaits = 4, kWaitsForSigns = 256;
 // A bound for all vertices at once that is too large by less than this is looked at vertex by vertex.
 constexpr double kLooser = 4;
+// Below this share of the resolution shorter pieces are not tried: what is nearer lies on each other.
+constexpr double kFinest = 1e-9;
 // No square of a length below this overflows.
 constexpr double kMostLength = 1e150;
 
@@ -146,6 +149,7 @@ std::optional<CrossingPair> TrueMotion::crossing_at(double time) {
 TrueAnswer TrueMotion::answer(double from, double to) {
   answer_ = {.from = from, .to = to};
   narrow_ = options_.narrow * (to - from);
+  more_left_ = options_.most_more_pieces;
   Places start, end;
   if (last_.time == from)
     start = std::move(last_);
@@ -194,6 +198,13 @@ void TrueMotion::say_close(double from, double to, double within, const std::vec
   answer_.verdict = TrueVerdict::close;
   answer_.from = from, answer_.to = to;
   answer_.pair = carriers(setup_.mesh, pairs.front()).front();
+}
+
+bool TrueMotion::look_on(double within) {
+  if (!looks_on_) more_ = std::min(options_.more_pieces, more_left_);
+  if (more_ == 0 || within <= kFinest * options_.resolution) return false;
+  --more_, --more_left_;
+  return true;
 }
 
 double TrueMotion::largest_width(const Places& from, const Places& to) const {
@@ -335,7 +346,7 @@ bool TrueMotion::look_at(Piece& piece, const Places& from, const Places& to,
   bool proven = (resolved || narrow) && proves_contact(piece, from, to, near);
   const TrueAnswer contact = answer_;
   if (proven && narrow) return false;
-  if (resolved && !proven) {
+  if (resolved && !proven && !look_on(within)) {
     say_close(from.time, to.time, within, near);
     return true;
   }
@@ -350,7 +361,10 @@ bool TrueMotion::look_at(Piece& piece, const Places& from, const Places& to,
                  std::vector<double>(piece.vertices.size())};
   paths_.positions(middle, piece.vertices, between.at, between.error);
   require_finite(between.at, "positions of the true motion");
-  if (!look_at(piece, from, between, near) || !look_at(piece, between, to, near)) return false;
+  const bool looked_on = std::exchange(looks_on_, resolved);
+  const bool more = look_at(piece, from, between, near) && look_at(piece, between, to, near);
+  looks_on_ = looked_on;
+  if (!more) return false;
   if (!proven) return true;
   // Neither half shows what the whole does, because the middle cannot be told: the whole is the proof.
   const std::size_t pieces = answer_.pieces;

@@ -44,13 +44,17 @@ struct TrueAnswer {
 };
 
 struct TrueMotionOptions {
-  // Features whose distance cannot be told from zero are looked at until it is known to be below this.
+  // Features whose distance cannot be told from zero are looked at until it is known to be below this, and
+  // for some pieces more: a blade that goes through a thin post within such a distance is told by shorter
+  // pieces.
   double resolution = 0;
   // A part is searched as a whole once no vertex leaves its line by more.
   double coarse = 0;
   // Contacts are narrowed down to this share of the span.
   double narrow = 1.0 / 256;
   std::size_t most_parts = 4096, most_pieces = 20'000;
+  // Pieces that are looked at below the resolution, of one part that is below it and of the whole span.
+  std::size_t more_pieces = 256, most_more_pieces = 2048;
   // Pairs of triangles, and the feature pairs that they alone carry, that are no part of answers; null for
   // none.
   const Exclusions* ignored = nullptr;
@@ -105,6 +109,8 @@ class TrueMotion {
                       const std::vector<FeaturePair>& pairs);
   void say_close(double from, double to, double within, const std::vector<FeaturePair>& pairs);
   bool give_up(double from, double to);
+  // Whether features within this distance, which is below the resolution, are looked at in shorter pieces.
+  bool look_on(double within);
 
   const VertexPaths& paths_;
   StrategyInput setup_;
@@ -124,6 +130,8 @@ class TrueMotion {
   ContactSet found_;
   TrueAnswer answer_;
   double narrow_ = 0;
+  bool looks_on_ = false;                 // what is looked at is below the resolution
+  std::size_t more_ = 0, more_left_ = 0;  // pieces below it that may still be looked at, there and in all
 };
 
 }  // namespace cscd

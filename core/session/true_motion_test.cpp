@@ -8,6 +8,7 @@
 #include "core/detect/plain_culler.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/catalogue.h"
+#include "core/fast/drvbc_fast.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {
@@ -168,6 +169,30 @@ TEST(TrueMotion, SaysNothingOfPathsWithoutABound) {
   TrueMotionOptions options = true_motion_options(1);
   options.most_parts = 16;
   EXPECT_EQ(two.motion(paths, options).answer(0, 1).verdict, TrueVerdict::undecided);
+}
+
+// A narrow blade goes through a narrow post within a hundredth of the span: at neither end of a part as long
+// as the resolution asks for does it pierce the post. Mutation: nothing is looked at below the resolution.
+TEST(TrueMotion, LooksCloserThanTheResolutionWhileItPays) {
+  constexpr double kWidth = 0.01;
+  // The post stands along z, beside a triangle far away, and the blade lies along y; six vertices each.
+  std::vector<Vec3> shape{{0, -0.1, -1.2}, {kWidth, -0.1, -1.2}, {0, -0.1, 1},
+                          {0, 50, 0},      {1, 50, 0},           {0, 51, 0}};
+  for (const Vec3& x : {Vec3(0, -1.1, -0.2), Vec3(kWidth, -1.1, -0.2), Vec3(0, 0.9, -0.2), Vec3(0, 60, 0),
+                        Vec3(1, 60, 0), Vec3(0, 61, 0)})
+    shape.push_back(x);
+  std::vector<Triangle> triangles;
+  for (int t = 0; t < 4; ++t)
+    triangles.push_back({VertexId{3 * t}, VertexId{3 * t + 1}, VertexId{3 * t + 2}});
+  const TriangleMesh mesh(triangles, shape.size());
+  const StrategyInput setup{mesh, shape, nullptr, *find_elementary_test("filtered_exact")};
+  const Sliding paths(shape, -0.7, 0.8);
+  TrueMotionOptions options{.resolution = 0.01, .coarse = 0.05};
+  const TrueAnswer found = TrueMotion(paths, setup, kDrvbcFastComplete, options).answer(0, 1);
+  EXPECT_EQ(found.verdict, TrueVerdict::touches);
+  EXPECT_LT(found.to - found.from, 1.0 / 256 + 1e-9);
+  options.more_pieces = 0;
+  EXPECT_EQ(TrueMotion(paths, setup, kDrvbcFastComplete, options).answer(0, 1).verdict, TrueVerdict::close);
 }
 
 }  // namespace
