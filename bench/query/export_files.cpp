@@ -127,11 +127,6 @@ struct IntervalMarks {
   std::vector<float> time, kind, normal;  // kind: 0 vertex and face, 1 two edges
 };
 
-// The last frame begins no interval, and nothing is known of its depths.
-std::vector<float> depth_of(const IntervalMarks& marks, const TriangleMesh& mesh) {
-  return marks.depth.empty() ? std::vector<float>(mesh.vertex_count()) : marks.depth;
-}
-
 // White where nothing is deep, and from yellow to red up to the deepest vertex of the clip.
 scenes::Rgb colour_of_depth(float depth, float deepest) {
   if (depth <= 0) return {255, 255, 255};
@@ -147,31 +142,48 @@ class Marker {
         elementary_(elementary_test_named("filtered_exact")),
         answerer_(prepared_input(input, strategy_), strategy_, elementary_, {}),
         names_(input),
-        events_(input, names_),
+        events_(input, names_, answerer_),
         observer_(strategy_.make(input.setup(elementary_))) {}
 
-  IntervalMarks mark(std::size_t interval) {
+  // Marks what is known of the interval that begins at a frame, or of the last frame, which begins none.
+  IntervalMarks mark(std::size_t frame) {
     IntervalMarks marks;
-    const std::size_t triangles = input_.mesh.triangle_count();
-    marks.touches.resize(triangles);
-    marks.crosses.resize(triangles);
-    const IntervalAnswer answer = answerer_.answer(interval);
-    const scenes::ClipInterval moving = input_.clip->load(interval);
+    marks.touches.resize(input_.mesh.triangle_count());
+    marks.crosses.resize(input_.mesh.triangle_count());
+    if (frame < input_.clip->interval_count()) {
+      const IntervalAnswer answer = answerer_.answer(frame);
+      const scenes::ClipInterval moving = input_.clip->load(frame);
+      add_start(answer, moving.motion.start(), marks);
+      add_contacts(answer, moving.motion, marks);
+      add_clusters(moving, marks);
+    } else {
+      add_start(answerer_.pose(frame), input_.clip->load_frame(frame).positions, marks);
+    }
+    return marks;
+  }
+
+ private:
+  void add_start(const IntervalAnswer& answer, std::span<const Vec3> start, IntervalMarks& marks) {
+    for (const CrossingPair& pair : answer.start.pairs)
+      marks.crosses[+pair.first] = marks.crosses[+pair.second] = 1;
+    add_overlaps(events_.add(answer, start, {.ways = true}), start, marks);
+  }
+
+  void add_contacts(const IntervalAnswer& answer, const Motion& motion, IntervalMarks& marks) const {
     for (const Contact& contact : answer.found.contacts) {
       if (contact.verdict != Verdict::contact) continue;
       for (const auto& [first, second] : carriers(input_.mesh, contact.pair))
         marks.touches[+first] = marks.touches[+second] = 1;
-      const ContactGeometry geometry =
-          contact_geometry(input_.mesh, moving.motion, contact.pair, contact.time);
+      const ContactGeometry geometry = contact_geometry(input_.mesh, motion, contact.pair, contact.time);
       marks.points.push_back(geometry.point);
       marks.time.push_back(static_cast<float>(contact.time));
       marks.kind.push_back(contact.pair.kind == FeaturePair::Kind::vertex_face ? 0 : 1);
       const Vec3 normal = geometry.normal.value_or(Vec3::Zero());
       for (int axis = 0; axis < 3; ++axis) marks.normal.push_back(static_cast<float>(normal[axis]));
     }
-    for (const CrossingPair& pair : answer.start.pairs)
-      marks.crosses[+pair.first] = marks.crosses[+pair.second] = 1;
-    add_overlaps(events_.add(answer, moving.motion.start(), {.ways = true}), moving.motion.start(), marks);
+  }
+
+  void add_clusters(const scenes::ClipInterval& moving, IntervalMarks& marks) {
     ContactSet ignored;
     observer_.detector->detect({moving.motion, moving.bones && input_.use_bones ? &*moving.bones : nullptr},
                                ignored);
@@ -184,11 +196,9 @@ class Marker {
       if (c < view.further_covers.size())
         covers[c]->assign(view.further_covers[c].cluster.begin(), view.further_covers[c].cluster.end());
       else
-        covers[c]->assign(triangles, -1.0F);
-    return marks;
+        covers[c]->assign(input_.mesh.triangle_count(), -1.0F);
   }
 
- private:
   void add_overlaps(const OverlapEvents::Here& here, std::span<const Vec3> start,
                     IntervalMarks& marks) const {
     marks.depth.resize(input_.mesh.vertex_count());
@@ -238,7 +248,7 @@ void export_events(Input& input, const fs::path& output, bool force) {
   std::vector<std::map<std::size_t, float>> deep(frames);  // few vertices lie inside another piece
   float deepest = 0;
   for (std::size_t f = 0; f < frames; ++f) {
-    const IntervalMarks marks = f + 1 == frames ? IntervalMarks{} : marker.mark(f);
+    const IntervalMarks marks = marker.mark(f);
     for (std::size_t v = 0; v < marks.depth.size(); ++v)
       if (marks.depth[v] > 0) deepest = std::max(deepest, deep[f][v] = marks.depth[v]);
     files.write(frames + f, scenes::curves_to_obj(marks.curves, std::vector<std::size_t>(marks.event.begin(),
@@ -272,8 +282,7 @@ void export_paraview(Input& input, const fs::path& output, bool force) {
   std::vector<scenes::VtkMoment> moments;
   Progress progress("export " + output.string(), frames);
   for (std::size_t f = 0; f < frames; ++f) {
-    const bool last = f + 1 == frames;
-    const IntervalMarks marks = last ? IntervalMarks{} : marker.mark(f);
+    const IntervalMarks marks = marker.mark(f);
     scenes::VtkSurface surface(input.clip->load_frame(f).positions, input.mesh.triangles());
     // The last frame begins no interval; every file of a series has the same arrays all the same.
     const std::vector<float> zeros(input.mesh.triangle_count(), 0.0F);
@@ -287,7 +296,7 @@ void export_paraview(Input& input, const fs::path& output, bool force) {
     cells("second_cover", marks.second_cover);
     cells("third_cover", marks.third_cover);
     cells("patch", marks.patch);
-    surface.add_to_points("depth", depth_of(marks, input.mesh));
+    surface.add_to_points("depth", marks.depth);
     scenes::VtkSurface lines(marks.curves);
     lines.add("event", marks.event);
     scenes::VtkSurface points(marks.points, {});
@@ -321,12 +330,12 @@ void export_usd(Input& input, const fs::path& output, bool force) {
   }
   Progress progress("export " + output.string(), frames);
   for (std::size_t f = 0; f < frames; ++f) {
-    const IntervalMarks marks = f + 1 == frames ? IntervalMarks{} : marker.mark(f);
+    const IntervalMarks marks = marker.mark(f);
     std::vector<std::uint8_t> colour(triangles, 0);
     for (std::size_t t = 0; t < marks.touches.size(); ++t)
       colour[t] = marks.crosses[t] > 0 ? 2 : marks.touches[t] > 0 ? 1 : 0;
-    surface.append(file_number(input, f), input.clip->load_frame(f).positions, colour, kPalette,
-                   depth_of(marks, input.mesh), marks.points, marks.curves);
+    surface.append(file_number(input, f), input.clip->load_frame(f).positions, colour, kPalette, marks.depth,
+                   marks.points, marks.curves);
     progress.advance();
   }
   file.commit(surface.text(0.004 * (high - low).norm()));

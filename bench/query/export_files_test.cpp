@@ -136,8 +136,6 @@ TEST_F(ExportFiles, RefusesSequencesThatAreNone) {
   const struct {
     const char *change, *query, *line;
   } kCases[] = {
-      {"true", "c.obj", "has no number"},
-      {"cp a.0000.obj lone.1.obj", "lone.1.obj", "only file of its sequence"},
       {"mv a.0002.obj kept", "a.0000.obj", "frame 2 of its sequence is missing before a.0003.obj"},
       {"mv kept a.0002.obj; head -n -1 a.0002.obj > b; mv b a.0002.obj", "a.0000.obj",
        "other faces than the first"},

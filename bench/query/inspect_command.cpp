@@ -7,6 +7,7 @@
 #include "bench/cli/output/output.h"
 #include "bench/measure/strategies/catalogue.h"
 #include "bench/measure/strategies/strategy_row.h"
+#include "bench/query/answer/answer_text.h"
 #include "bench/query/input/input.h"
 #include "bench/query/input/thickness.h"
 #include "bench/query/options/answer_options.h"
@@ -250,6 +251,8 @@ void print(const json& document) {
                 in_full ? strategies_text(c["strategies"]).c_str() : "");
   }
   if (passed_over > 0) std::printf("  and %zu more components; --json FILE lists all\n", passed_over);
+  if (document["identical_triangles"] != 0)
+    std::printf("  %s\n", identical_text(document["identical_triangles"].get<std::size_t>()).c_str());
   if (document.contains("thickness")) print_close(document["thickness"]);
   if (document["components"].size() < 2) return;
   const json& all = document["together"];
@@ -260,7 +263,7 @@ void print(const json& document) {
 void inspect(InspectOptions options) {
   std::optional<OutputFile> output;
   if (!options.output.empty()) output.emplace(options.output, options.force);
-  if (is_model_file(options.input)) options.model.import.survey = true;
+  if (is_model_file(options.input)) options.model.import.survey = options.model.import.one_pose = true;
   Input input = open_input(options.input, options.model);
   say_what_was_read(input, stdout);
   set_thickness(input, options.thickness);
@@ -278,6 +281,7 @@ void inspect(InspectOptions options) {
     std::printf("%s: %s, %s\n", options.input.c_str(), many(input.clip->frame_count(), "frame").c_str(),
                 many(input.clip->header().bone_parent.size(), "bone").c_str());
   }
+  document["identical_triangles"] = identical_triangles(input.mesh);
   document["components"] = json::array();
   for (std::size_t p = 0; p < pieces.size(); ++p) {
     json row = piece_json(pieces[p], moments, has_bones);

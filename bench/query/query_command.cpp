@@ -30,7 +30,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr char kSchema[] = "cscd.query/3";
 constexpr std::size_t kStartPairs = 1000;  // listed of an interval, unless all are asked for
 
 struct QueryOptions : AnswerRequest {
@@ -80,9 +79,9 @@ Answerer prepare(const QueryOptions& options, Input& input, const Strategy& stra
   }
 }
 
-// Answers the chosen intervals of a clip, and keeps them if `keep_intervals` says so.
+// Answers the chosen intervals of a clip, and writes the document of it unless `document` is null.
 ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceNames& names,
-                       bool keep_intervals) {
+                       JsonStream* document) {
   const ElementaryTest& elementary = elementary_test_named(options.elementary);
   const Strategy& strategy = options.strategy.empty() ? default_strategy(input, options.answers.first)
                                                       : strategy_named(options.strategy);
@@ -94,9 +93,13 @@ ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceN
   if (!options.preparation.empty() && input.preparation.empty())
     write_preparation(options.preparation, answerer.saved_preparation(), strategy);
   std::optional<TrueAnswerer> true_motion;
-  if (input.motion) true_motion.emplace(input, elementary, answerer.rest_crossings(), options.answers);
+  if (input.motion)
+    true_motion.emplace(input, elementary, answerer.rest_crossings(), options.answers, options.resolution);
   ClipAnswer answer = prepared_answer(input, names, strategy, elementary, options.answers, answerer);
-  OverlapEvents events(input, names);
+  OverlapEvents events(input, names, answerer);
+  std::optional<ClipJson> json;
+  if (document != nullptr)
+    json.emplace(*document, answer, options.input, most_start_pairs(options.start_pairs));
   Progress progress("query " + options.input, range.last - range.first);
   for (std::size_t i = range.first; i < range.last; ++i) {
     watchdog.restart();
@@ -108,10 +111,13 @@ ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceN
     interval.event_of_contact = here.event_of_contact;
     if (options.new_contacts) keep_new(interval, here, input.thickness.length > 0);
     answer.summary.add(interval, motion, names);
-    if (keep_intervals) answer.intervals.push_back(std::move(interval));
+    if (json) json->add(answer, interval, motion);
     progress.advance();
   }
-  answer.take(events);
+  watchdog.restart();
+  std::optional<IntervalAnswer> last = last_pose_of(input, range.last, answerer, events);
+  answer.take(std::move(last), events);
+  if (json) json->finish(answer);
   if (answerer.new_triangles() > 0)
     std::printf("preparation %s: %zu of %zu triangles are new since it was kept, and were prepared now\n",
                 options.preparation.c_str(), answerer.new_triangles(), input.mesh.triangle_count());
@@ -121,30 +127,27 @@ ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceN
 // What was said of a clip, or of all clips of a file.
 struct Said {
   IntervalVerdict verdict = IntervalVerdict::clear;  // of a clip that touches or crosses, if there is one
-  json document = nullptr;                           // unless it was asked for
   bool too_deep = false;                             // for --fail-deeper-than
   std::vector<std::string> apart;                    // of what the verdict does not speak
 };
 
-Said say_clip(const QueryOptions& options, Input input, bool with_json, bool is_brief = false) {
+Said say_clip(QueryOptions options, Input input, JsonStream* document, bool is_brief = false) {
   input.threads = options.threads;
+  // The one pose of a file is asked about as it is, whatever is left out of motions.
+  if (input.is_one_pose) options.answers.keep_rest_crossings = true;
   ignore(input, options.ignored);
   set_thickness(input, options.thickness);
   const SurfaceNames names(input);
-  const ClipAnswer answer = answer_clip(options, input, names, with_json);
+  const ClipAnswer answer = answer_clip(options, input, names, document);
   std::printf("%s", (is_brief ? brief_clip_text(answer) : clip_text(answer)).c_str());
   Said said;
   said.verdict = input.motion ? answer.true_motion.verdict() : answer.summary.verdict();
-  said.apart = verdict_exceptions(answer.summary);
+  said.apart = verdict_exceptions(answer);
   if (options.fail_deeper_than) {
     const DepthCheck check = check_depth(answer, *options.fail_deeper_than);
     said.too_deep = check.fails;
     std::printf("  %s\n", check.text.c_str());
   }
-  if (!with_json) return said;
-  said.document = clip_json(answer, most_start_pairs(options.start_pairs));
-  said.document["schema"] = kSchema;
-  said.document["input"] = options.input;
   return said;
 }
 
@@ -164,6 +167,7 @@ class AllVerdicts {
   void add(const std::string& clip, IntervalVerdict verdict, const std::vector<std::string>& apart) {
     apart_.insert(apart.begin(), apart.end());
     names_[static_cast<std::size_t>(verdict)].push_back(clip);
+    if (verdict == IntervalVerdict::clear) (apart.empty() ? untouched_ : left_out_).push_back(clip);
   }
   void pass_over(const std::string& clip) { still_.push_back(clip); }
   std::size_t answered() const {
@@ -183,7 +187,8 @@ class AllVerdicts {
     say(of(IntervalVerdict::touches), "touches itself", "touch themselves");
     say(of(IntervalVerdict::close), "comes close to itself", "come close to themselves");
     say(of(IntervalVerdict::undecided), "may touch itself", "may touch themselves");
-    say(of(IntervalVerdict::clear), "does not touch itself", "do not touch themselves");
+    say(untouched_, "does not touch itself", "do not touch themselves");
+    say(left_out_, "touches itself only in what is left out", "touch themselves only in what is left out");
     say(still_, "is one pose and was passed over", "are one pose and were passed over");
     const std::size_t count = answered() + still_.size();
     if (!apart_.empty()) text += "; all of this apart from ";
@@ -207,13 +212,14 @@ class AllVerdicts {
     return names_[static_cast<std::size_t>(verdict)];
   }
   std::array<std::vector<std::string>, 5> names_;  // of clips, by their verdicts
+  std::vector<std::string> untouched_, left_out_;  // of the clear ones: those without and with exceptions
   std::vector<std::string> still_;
   std::set<std::string> apart_;
 };
 
 // Answers the clips of a model file, one after the other. A clip of one pose moves nothing and is passed
-// over.
-Said say_all_clips(QueryOptions options, Input first, bool with_json) {
+// over, unless no clip moves.
+Said say_all_clips(QueryOptions options, Input first, JsonStream* document) {
   const scenes::ImportReport seen = *first.import;
   if (!options.frames.empty())
     throw InputError("--frames " + options.frames + ": is for one clip, and " + options.input + " has " +
@@ -223,12 +229,17 @@ Said say_all_clips(QueryOptions options, Input first, bool with_json) {
   std::printf("%s (%s)\n  %s, %s\n%s", options.input.c_str(), seen.format.c_str(),
               many(seen.clips.size(), "clip").c_str(), rate_text(seen).c_str(), surface_text(seen).c_str());
   Said all;
-  all.document = {{"schema", kSchema}, {"input", options.input}, {"clips", json::array()}};
-  all.document["import"] = import_json(seen);
-  all.document["import"]["clip"] = nullptr;  // none of them alone
+  if (document != nullptr) {
+    document->begin_object();
+    document->key("clips");
+    document->begin_array();
+  }
+  const bool something_moves =
+      options.model.import.from_bind_pose ||
+      std::ranges::any_of(seen.clips, [](const scenes::ImportReport::Clip& clip) { return clip.frames > 1; });
   AllVerdicts verdicts;
   for (std::size_t clip = 0; clip < seen.clips.size(); ++clip) {
-    if (seen.clips[clip].frames < 2 && !options.model.import.from_bind_pose) {
+    if (seen.clips[clip].frames < 2 && something_moves && !options.model.import.from_bind_pose) {
       verdicts.pass_over(seen.clips[clip].name);
       continue;
     }
@@ -237,32 +248,39 @@ Said say_all_clips(QueryOptions options, Input first, bool with_json) {
     const bool is_open = seen.chosen_clip == static_cast<long>(clip);
     Said one;
     name_input(options.input, [&] {
-      one = say_clip(options, is_open ? std::move(first) : open_input(options.input, options.model),
-                     with_json, seen.clips.size() > 1);
+      one = say_clip(options, is_open ? std::move(first) : open_input(options.input, options.model), document,
+                     seen.clips.size() > 1);
     });
     verdicts.add(seen.clips[clip].name, one.verdict, one.apart);
     if (collides(one.verdict)) all.verdict = one.verdict;
     all.too_deep = all.too_deep || one.too_deep;
-    if (with_json) all.document["clips"].push_back(std::move(one.document));
   }
-  if (verdicts.answered() == 0)
-    throw InputError(options.input +
-                     ": has no clip of more than one pose, so nothing moves; pass "
-                     "--from-bind-pose to move from the bind pose to one of them");
   std::printf("%s\n", verdicts.sentence(options.input).c_str());
   if (seen.clips.size() > 1) {
     const char* const paths = "; --true-motion asks about the paths on which bones carry the surface";
     std::printf("  --clip NAME says more of one, and --json FILE all of each%s\n",
                 options.model.true_motion ? "" : paths);
   }
-  all.document["summary"] =
-      verdicts.as_json(options.input, options.thickness.thickness.number > 0 || options.model.true_motion);
+  if (document == nullptr) return all;
+  document->end();
+  json import = import_json(seen);
+  import["clip"] = nullptr;  // none of them alone
+  const bool is_thick = options.thickness.thickness.number > 0 || options.model.true_motion;
+  for (const auto& [key, value] : {std::pair<const char*, json>{"import", std::move(import)},
+                                   {"input", options.input},
+                                   {"schema", kQuerySchema},
+                                   {"summary", verdicts.as_json(options.input, is_thick)}}) {
+    document->key(key);
+    document->value(value);
+  }
+  document->end();
   return all;
 }
 
 // Without a name, all clips are asked about. The first that moves has then been opened, which tells how many
 // there are; a file of one clip is read once.
-Said say_answers(const QueryOptions& options, bool with_json) {
+Said say_answers(QueryOptions options, JsonStream* document) {
+  options.model.import.one_pose = is_model_file(options.input);
   const bool all = options.model.import.clip == kAllClips && is_model_file(options.input);
   ModelOptions model = options.model;
   if (all) {
@@ -270,10 +288,10 @@ Said say_answers(const QueryOptions& options, bool with_json) {
     model.import.survey = true;
   }
   Input input = open_input(options.input, model);
-  if (all || !input.clip_was_named) return say_all_clips(options, std::move(input), with_json);
+  if (all || !input.clip_was_named) return say_all_clips(options, std::move(input), document);
   say_what_was_read(input, stdout);
   Said said;
-  name_input(options.input, [&] { said = say_clip(options, std::move(input), with_json); });
+  name_input(options.input, [&] { said = say_clip(options, std::move(input), document); });
   return said;
 }
 
@@ -290,10 +308,11 @@ void query(QueryOptions options) {
   std::optional<OutputFile> output;
   if (!options.output.empty()) output.emplace(options.output, options.force);
 
-  const Said said = say_answers(options, output.has_value());
+  JsonStream document([&](std::string_view piece) { output->write(piece); });
+  const Said said = say_answers(options, output ? &document : nullptr);
   if (output) {
-    // Names of files and their text may hold anything: what is no UTF-8 is replaced.
-    output->commit(said.document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");
+    document.finish();
+    output->commit();
   }
   if (options.fail_on_contact && collides(said.verdict)) throw kContactFound;
   if (said.too_deep) throw kContactFound;
@@ -322,7 +341,7 @@ void add_query(CLI::App& app) {
       "clothes\n"
       "in skin) is how a character is made: pairs of triangles that cross in the bind pose, or in frame 0 of "
       "a\n"
-      "point cache, are named once and left out, unless --keep-rest-crossings.\n\n"
+      "point cache, are named once and left out until they part, unless --keep-rest-crossings.\n\n"
       "Where a start is not embedded, the guarantee first_contact is void, and the fastest complete "
       "strategy\n"
       "answers that interval instead (--unproven: do not). Whoever wants the earliest contact and no later "
@@ -342,6 +361,7 @@ void add_query(CLI::App& app) {
       "--true-motion", options->model.true_motion,
       "of a model file, ask also about the paths on which keys and bones carry the surface between "
       "frames,\nwith proof: its verdicts decide --fail-on-contact");
+  add_resolution_option(*command, *options);
   command->add_option("--json", options->output, "where the whole answer goes; - is standard output");
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->add_option(
@@ -355,9 +375,8 @@ void add_query(CLI::App& app) {
           [options = options.get()](const std::string& text) {
             options->fail_deeper_than = parse_length("--fail-deeper-than", text);
           },
-          "exit with status 3 when a piece of the surface lies deeper in another at the start of an "
-          "interval: "
-          "a length such as 0.01, or 0.2e for mean edges of the pose at rest")
+          "exit with status 3 when a piece of the surface lies deeper in another in any frame: a length such "
+          "as 0.01, or 0.2e for mean edges of the pose at rest")
       ->type_name("LENGTH");
   command->add_flag(
       "--new-contacts", options->new_contacts,

@@ -139,6 +139,40 @@ TEST_F(TrueMotionOption, TakesKeysThatAreNextToEachOther) {
   }
 }
 
+// An arm goes once round from frame to frame, through the body. Mutation: whether a clip moves is judged by
+// its frames alone.
+TEST_F(TrueMotionOption, TakesAMotionThatEndsEveryFrameWhereItBegan) {
+  scenes::Character figure = scenes::walking_figure();
+  figure.animations.erase(figure.animations.begin());
+  scenes::Animation& turn = figure.animations[0];
+  turn.channels.resize(1);
+  turn.channels[0].rotations.clear();
+  for (int k = 0; k <= 6; ++k)
+    turn.channels[0].rotations.push_back({k / 3.0, scenes::from_euler({0, 120.0 * k, 0}, {0, 1, 2})});
+  turn.seconds = 2;
+  put("rotor.glb", scenes::to_glb(figure));
+  const json found = answer("rotor.glb --fps 1 --true-motion");
+  EXPECT_EQ(found["summary"]["verdict"], "clear");
+  EXPECT_GT(found["summary"]["true_motion"]["touches"], 0);
+  EXPECT_EQ(run("cscd query rotor.glb --fps 1 --true-motion --fail-on-contact").status, 3);
+  const Ran lines = run("cscd query rotor.glb --fps 1");
+  EXPECT_NE(lines.out.find("moves between its frames alone: at 1 a second"), std::string::npos) << lines.out;
+  EXPECT_NE(lines.out.find("does not move in frames 0 to 2"), std::string::npos) << lines.out;
+  EXPECT_EQ(run("cscd export rotor.glb --fps 1 rotor.h5").status, 0);
+}
+
+TEST_F(TrueMotionOption, TakesAResolution) {
+  EXPECT_EQ(
+      answer("figure.glb --clip hug --true-motion --resolution 0.1e")["summary"]["true_motion"]["verdict"],
+      "intersects_at_start");
+  expect_refused(run("cscd query figure.glb --clip walk --resolution 0.1"), "is for --true-motion");
+  expect_refused(run("cscd query figure.glb --clip walk --true-motion --resolution 0"), "above 0");
+  scenes::Character still = scenes::walking_figure();
+  still.animations.clear();
+  put("still.glb", scenes::to_glb(still));
+  expect_refused(run("cscd query still.glb --true-motion"), "--true-motion: is one pose");
+}
+
 TEST_F(TrueMotionOption, RefusesInOneLine) {
   expect_refused(run("cscd query small --true-motion"), "nothing is known but straight lines");
   expect_refused(run("cscd query figure.glb --clip walk --true-motion --thickness 0.1"),

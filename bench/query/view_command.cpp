@@ -88,8 +88,10 @@ json true_moment(const Input& input, const SurfaceNames& names, const IntervalAn
 }
 
 // Answers one clip, adds its arrays to `sections`, and returns what a page has to know of it.
-json record_clip(const ViewRequest& options, Input input, Sections& sections) {
+json record_clip(ViewRequest options, Input input, Sections& sections) {
   input.threads = options.threads;
+  // The one pose of a file is asked about as it is, whatever is left out of motions.
+  if (input.is_one_pose) options.answers.keep_rest_crossings = true;
   ignore(input, options.ignored);
   set_thickness(input, options.thickness);
   const ElementaryTest& elementary = elementary_test_named(options.elementary);
@@ -115,9 +117,11 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
   }
   std::optional<TrueAnswerer> true_motion;
   if (input.motion)
-    true_motion.emplace(input, elementary, contestants.front()->answerer.rest_crossings(), options.answers);
+    true_motion.emplace(input, elementary, contestants.front()->answerer.rest_crossings(), options.answers,
+                        options.resolution);
   json true_moments = json::array();
-  OverlapEvents events(input, names);
+  Answerer& first_answerer = contestants.front()->answerer;
+  OverlapEvents events(input, names, first_answerer);
   OverlapRecording overlaps;
   input.use_bones = true;  // strategies that do without take no notice
   {
@@ -151,9 +155,10 @@ json record_clip(const ViewRequest& options, Input input, Sections& sections) {
     clip.add_frame(input.clip->load_frame(range.last));
   }
   watchdog.restart();
+  const std::optional<IntervalAnswer> last = last_pose_of(input, range.last, first_answerer, events);
 
   overlaps.write(sections);
-  for (const auto& contestant : contestants) contestant->recording.take(events);
+  for (const auto& contestant : contestants) contestant->recording.take(last, events);
   const Up up = options.up.empty() ? input.up : Up{options.up, "--up says so"};
   json rows = json::array();
   for (std::size_t s = 0; s < contestants.size(); ++s)
@@ -222,7 +227,7 @@ void record_all_clips(const ViewRequest& options, json& header, Sections& sectio
 
 }  // namespace
 
-std::string view_page(const ViewRequest& options) {
+std::string view_page(ViewRequest options) {
   require_viewer();
   require_sound(options);
   for (const std::string& name : options.strategies) require_fit(options.thickness, strategy_named(name));
@@ -230,6 +235,7 @@ std::string view_page(const ViewRequest& options) {
     throw InputError("--strategy: a page compares up to " + std::to_string(kMostStrategies) +
                      " strategies; name fewer");
   const bool model = is_model_file(options.input);
+  options.model.import.one_pose = model;
   json header = {{"schema", "cscd.view/1"},
                  {"name", short_name(options.input)},
                  {"kind", model                           ? "model"
@@ -278,6 +284,7 @@ void add_view(CLI::App& app) {
   command->add_flag(
       "--true-motion", options->model.true_motion,
       "of a model file, show also where the paths on which keys and bones carry the surface touch");
+  add_resolution_option(*command, *options);
   command->add_option("--strategy", options->strategies,
                       "culling strategy (cscd list); several, each with its own --strategy, stand side by "
                       "side;\nwithout it, the best that the input allows");

@@ -15,6 +15,6 @@ struct ViewRequest : AnswerRequest {
 
 // Answers all intervals and returns the page. Says on standard output what was read and answered. Throws
 // InputError for a request that cannot be met.
-std::string view_page(const ViewRequest& request);
+std::string view_page(ViewRequest request);
 
 }  // namespace cscd::bench

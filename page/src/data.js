@@ -88,10 +88,11 @@ function boxesOf(places, { frames, vertices }) {
 // Whether a triangle's bit is set in the row of an interval.
 export const bitOf = (bytes, triangles, interval, t) => (bytes[interval * Math.ceil(triangles / 8) + (t >> 3)] >> (t & 7)) & 1;
 
-// An event of the summary, with intervals that count from the recording's first.
+// An event of the summary, with intervals that count from the recording's first. It is deepest at the start of interval
+// `deepest`, where `time` is 0, or in the last pose, which is the end of the last interval.
 function eventOf({ clip, strategies }, number) {
   const event = strategies[0].summary.events[number], from = (moment) => moment.interval - clip.first_interval;
-  return { number, first: from(event.begins), deepest: from(event.deepest), last: from(event.ends), point: event.point, depths: event.depth_at };
+  return { number, first: from(event.begins), deepest: from(event.deepest), time: event.deepest.time, last: from(event.ends), point: event.point, depths: event.depth_at };
 }
 
 // Returns everything that the page shows. Lengths are scaled so that the clip's box has a longest side of 1, centred at the

@@ -112,7 +112,7 @@ class Viewer {
     if (moment.event) this.mode = "depth";
     // The other end of an interval of the true motion is a pose within it.
     this.pinned = { interval: moment.interval, t: moment.truth ? 1 : t, at: t,
-      predicted: moment.truth ? true : !this.recording.truths && this.recording.endOfInterval.has(moment.interval) };
+      predicted: moment.truth ? true : !moment.event && !this.recording.truths && this.recording.endOfInterval.has(moment.interval) };
     this.position = moment.interval + t;
     this.refresh();
     this.showChosen(smooth);

@@ -30,4 +30,4 @@ export const truthsOf = ({ truths, endOfInterval }) =>
   Array.from(truths?.values() ?? []).filter((truth) => endOfInterval.has(truth.interval)).map((truth) => ({ interval: truth.interval, truth }));
 
 // When a moment is, in its interval.
-export const timeOf = (strategy, moment) => (moment.truth ? moment.truth.at : moment.contact === undefined ? 0 : strategy.contact_time[moment.contact] / 65535);
+export const timeOf = (strategy, moment) => (moment.truth ? moment.truth.at : moment.event ? moment.event.time : moment.contact === undefined ? 0 : strategy.contact_time[moment.contact] / 65535);

@@ -185,7 +185,7 @@ try {
   }
 
   // What lies in itself is listed, and a click leads to where it is deepest, in colours of its depth.
-  const events = await page.evaluate(() => window.cscd.recording.events.map(({ deepest }) => deepest));
+  const events = await page.evaluate(() => window.cscd.recording.events.map(({ deepest, time }) => deepest + time));
   require((await page.locator("button.event").count()) === Math.min(10, events.length), "not every event is listed");
   if (events.length > 0) {
     await page.locator("button.event").last().click();

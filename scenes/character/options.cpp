@@ -41,6 +41,7 @@ std::vector<std::string> to_arguments(const ImportOptions& options) {
   if (options.from_bind_pose) words.push_back("--from-bind-pose");
   if (options.flip_inward) words.push_back("--flip-inward");
   if (options.survey) words.push_back("--survey");
+  if (options.one_pose) words.push_back("--one-pose");
   if (!options.motion.empty()) add("--motion", options.motion);
   return words;
 }
@@ -71,6 +72,8 @@ ImportOptions parse_arguments(std::span<const std::string> arguments) {
       options.flip_inward = true;
     } else if (name == "--survey") {
       options.survey = true;
+    } else if (name == "--one-pose") {
+      options.one_pose = true;
     } else if (name == "--motion") {
       options.motion = value();
     } else {

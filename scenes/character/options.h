@@ -20,6 +20,8 @@ struct ImportOptions {
   // Survey the file instead of importing one clip: take all components in the bind pose and at
   // the start of every clip.
   bool survey = false;
+  // Take a file, or a clip, that is one pose: the import then holds this pose twice. Otherwise it is refused.
+  bool one_pose = false;
   // A file for the motion of the clip (scenes/motion/motion_file.h); empty: it is not written. A survey has
   // none.
   std::string motion;

@@ -78,12 +78,15 @@ class FileSequence final : public MeshSequence {
  public:
   explicit FileSequence(const fs::path& path) : FileSequence(files_of_sequence(path)) {}
   std::string format() const override {
-    return extension_of(files_[0]) == ".ply" ? "PLY sequence" : "OBJ sequence";
+    const std::string format = extension_of(files_[0]) == ".ply" ? "PLY" : "OBJ";
+    return format + (files_.size() > 1 ? " sequence" : "");
   }
   std::vector<std::string> notes() const override {
     return notes_of(first_, faces_,
-                    "the frames are " + std::to_string(files_.size()) + " files, " +
-                        files_.front().filename().string() + " to " + files_.back().filename().string());
+                    files_.size() < 2 ? ""
+                                      : "the frames are " + std::to_string(files_.size()) + " files, " +
+                                            files_.front().filename().string() + " to " +
+                                            files_.back().filename().string());
   }
   std::size_t frame_count() const override { return files_.size(); }
   double first_frame() const override { return first_frame_; }

@@ -144,10 +144,7 @@ bool is_mesh_sequence_file(const fs::path& path) {
 
 SequenceFiles files_of_sequence(const fs::path& path) {
   const auto wanted = cut(path);
-  if (!wanted)
-    throw InputError(
-        "is one pose, and nothing moves: its name has no number; name one file of a sequence, as in "
-        "walk.0001.obj");
+  if (!wanted) return {{path}};
   std::vector<fs::path> alike;
   for (const fs::path& file : files_in(path.has_parent_path() ? path.parent_path() : fs::path(".")))
     if (in_lower_case(file.extension().string()) == in_lower_case(path.extension().string()))
@@ -155,10 +152,7 @@ SequenceFiles files_of_sequence(const fs::path& path) {
   const std::map<FrameName, Frames> sequences = sequences_in(alike);
   require_clear_dashes(sequences, wanted->first);
   const auto frames = sequences.find(wanted->first);
-  if (frames == sequences.end() || frames->second.size() < 2)
-    throw InputError(
-        "is the only file of its sequence, and nothing moves; put the other frames beside it, as in "
-        "walk.0001.obj, walk.0002.obj");
+  if (frames == sequences.end()) return {{path}};  // it is not in its folder: reading it says why
   SequenceFiles sequence;
   const std::int64_t first = frames->second.begin()->first;
   for (const auto& [number, file] : frames->second) {

@@ -17,8 +17,8 @@ struct SequenceFiles {
 
 // Returns the sequence of a file. The names of its files differ in the last number before the extension
 // alone, as walk.0001.obj and walk.0002.obj do. A number has a sign where a blank or a mark stands before it,
-// as in cloth.-10.obj; the dash of walk-1.obj joins two words. Throws InputError if `path` has no number, if
-// it is the only file, if a number is missing in between, and where dashes may be meant either way.
+// as in cloth.-10.obj; the dash of walk-1.obj joins two words. A file without a number is alone. Throws
+// InputError if a number is missing in between, and where dashes may be meant either way.
 SequenceFiles files_of_sequence(const std::filesystem::path& path);
 
 // Returns the file itself, or the first file of the one sequence, or the one cache, that a folder holds.

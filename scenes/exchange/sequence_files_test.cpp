@@ -41,7 +41,7 @@ TEST_F(Sequence, IsInTheOrderOfItsNumbers) {
        ".walk.11.obj"});
   EXPECT_EQ(names("walk.9.obj"), "walk.0008.OBJ walk.9.obj walk.10.obj ");
   EXPECT_EQ(files_of_sequence(scratch.path / "walk.10.obj").first_frame, 8);
-  EXPECT_TRUE(says(refusal("run.1.obj"), "is the only file of its sequence"));
+  EXPECT_EQ(files_of_sequence(scratch.path / "run.1.obj").files.size(), 1u);
   EXPECT_TRUE(says(refusal("walk.note.obj"), "its name has no number"));
   put({"walk.12.obj"});
   EXPECT_TRUE(says(refusal("walk.9.obj"), "frame 11 of its sequence is missing before walk.12.obj"));

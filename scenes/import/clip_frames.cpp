@@ -14,8 +14,13 @@ namespace {
 // A clip ends with a whole frame if its length differs from a whole number of frames by less than this.
 // Times in files are single precision, so their lengths are seldom exact.
 constexpr double kNearFrame = 1e-3;
-// At most this many poses of a clip are tried to see whether the clip moves anything.
+// At most this many poses of a clip are tried to see whether the clip moves the surface.
 constexpr std::size_t kMostLooks = 4096;
+// So many times between two frames a clip is looked at, too, at the fractional parts of multiples of this
+// share of a frame. A motion that comes back to one pose in every frame, as a wheel of one turn a frame does,
+// comes back at none of them, because no small multiple of it is whole: (3 - sqrt(5)) / 2.
+constexpr std::size_t kLooksBetween = 8;
+constexpr double kShareBetween = 0.381966011250105;
 // Movement below this share of the diagonal counts as rounding.
 constexpr double kMoves = 1e-9;
 
@@ -36,20 +41,35 @@ std::string lower(std::string text) {
   return text;
 }
 
-// Tells whether the clip moves a used vertex between two of its frames.
-bool moves_surface(const Character& character, const Animation& animation, const std::vector<bool>& used,
-                   double diagonal, double fps) {
-  if (animation.channels.empty() && animation.morphs.empty()) return false;
+// What a clip does to the vertices in use.
+enum class Movement { none, between_frames, at_frames };
+
+// Looks at the frames of a clip, and where these show one pose, between them.
+Movement movement_of(const Character& character, const Animation& animation, const std::vector<bool>& used,
+                     double diagonal, double fps) {
+  if (animation.channels.empty() && animation.morphs.empty()) return Movement::none;
   const std::size_t frames = std::min(frames_of(animation.seconds, fps), kMostLooks);
   std::vector<Vec3> first, now;
-  for (std::size_t i = 0; i < frames; ++i) {
-    const double share = frames < 2 ? 0 : static_cast<double>(i) / static_cast<double>(frames - 1);
+  const auto skin_at = [&](double frame, std::vector<Vec3>& out) {
+    const double share = frames < 2 ? 0 : frame / static_cast<double>(frames - 1);
     const Moment moment = moment_at(character, animation, share * animation.seconds);
-    skin(character, moment.pose, moment.weights, i == 0 ? first : now);
-    for (std::size_t v = 0; i > 0 && v < first.size(); ++v)
+    skin(character, moment.pose, moment.weights, out);
+  };
+  const auto moves_at = [&](double frame) {
+    skin_at(frame, now);
+    for (std::size_t v = 0; v < first.size(); ++v)
       if (used[v] && (now[v] - first[v]).cwiseAbs().maxCoeff() > kMoves * diagonal) return true;
-  }
-  return false;
+    return false;
+  };
+  skin_at(0, first);
+  for (std::size_t i = 1; i < frames; ++i)
+    if (moves_at(static_cast<double>(i))) return Movement::at_frames;
+  for (std::size_t k = 1, looks = 0; k <= kLooksBetween; ++k)
+    for (std::size_t i = 0; i + 1 < frames && looks < kMostLooks; ++i, ++looks) {
+      const double share = static_cast<double>(k) * kShareBetween;
+      if (moves_at(static_cast<double>(i) + share - std::floor(share))) return Movement::between_frames;
+    }
+  return Movement::none;
 }
 
 std::size_t clip_named(const Character& character, const std::string& wanted) {
@@ -87,9 +107,16 @@ std::size_t choose_clip(const Character& character, const std::vector<bool>& use
                      listed_clips(character));
   }
   if (!options.clip.empty()) return clip_named(character, options.clip);
-  for (std::size_t i = 0; i < all.size(); ++i)
-    if (moves_surface(character, all[i], used, diagonal, fps)) return i;
-  if (options.from_bind_pose) return 0;
+  std::optional<std::size_t> between;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Movement movement = movement_of(character, all[i], used, diagonal, fps);
+    if (movement == Movement::at_frames) return i;
+    if (movement == Movement::between_frames && !between) between = i;
+  }
+  if (between) return *between;
+  const bool are_poses = std::ranges::all_of(
+      all, [fps](const Animation& animation) { return frames_of(animation.seconds, fps) < 2; });
+  if (options.from_bind_pose || (options.one_pose && are_poses)) return 0;
   throw InputError(
       "none of its clips moves the surface: " + listed_clips(character) + ", at " + exact_text(fps) +
       " a second; give more frames with --fps, pass --from-bind-pose to move from the bind pose to "
@@ -124,8 +151,9 @@ double frame_number(double seconds, double fps) {
 Frames plan_frames(const Character& character, const Pose& bound, const std::vector<bool>& used,
                    double diagonal, const ImportOptions& options, ImportReport& report) {
   if (options.survey) return survey(character, bound);
-  const bool to_rest = character.animations.empty() && options.from_bind_pose;
-  if (to_rest) report.notes.push_back("has no clip; moves from the bind pose to the pose at rest");
+  const bool to_rest = character.animations.empty() && (options.from_bind_pose || options.one_pose);
+  if (to_rest && options.from_bind_pose)
+    report.notes.push_back("has no clip; moves from the bind pose to the pose at rest");
   const long chosen =
       to_rest ? -1 : static_cast<long>(choose_clip(character, used, diagonal, report.fps, options));
   const Animation animation = to_rest ? Animation{} : character.animations[static_cast<std::size_t>(chosen)];
@@ -136,8 +164,16 @@ Frames plan_frames(const Character& character, const Pose& bound, const std::vec
           : 0;
   report.chosen_clip = chosen;
   report.lead_in = lead_in;
-  if (frames + lead_in < 2)
+  const bool is_one_pose = frames + lead_in < 2;
+  if (is_one_pose && !options.one_pose)
     throw InputError("--clip " + options.clip + ": is one pose; pass --from-bind-pose to move to it");
+  if (is_one_pose && !options.motion.empty())
+    throw InputError("--true-motion: is one pose, and nothing moves; leave it out");
+  if (!is_one_pose && lead_in == 0 &&
+      movement_of(character, animation, used, diagonal, report.fps) == Movement::between_frames)
+    report.notes.push_back(
+        "moves between its frames alone: at " + exact_text(report.fps) +
+        " a second, all frames show one pose; give more with --fps, or ask for --true-motion");
   const auto moment = [&character, &bound, animation, fps = report.fps, lead_in](std::size_t frame) {
     if (frame >= lead_in)
       return moment_at(character, animation, second_of_frame(frame - lead_in, animation.seconds, fps));
@@ -146,7 +182,7 @@ Frames plan_frames(const Character& character, const Pose& bound, const std::vec
     return Moment{blend(character, bound, start.pose, share),
                   blend(rest_weights(character), start.weights, share)};
   };
-  return {frames + lead_in, moment};
+  return {is_one_pose ? 2 : frames + lead_in, moment};  // a cache has two
 }
 
 }  // namespace cscd::scenes

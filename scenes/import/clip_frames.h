@@ -36,7 +36,9 @@ struct Frames {
 // report. A name is looked for exactly first, then as the number of a clip, then without regard to case.
 // Without a name, the first clip is chosen that moves one of the vertices in use (`used`, [raw vertices]) by
 // more than rounding, measured by `diagonal`. A survey gets the bind pose `bound` and the start of every clip
-// instead. Throws InputError if no clip or several clips fit the name, and if no clip moves the surface.
+// instead. Where the options take one pose, a clip that is
+// one pose gives two equal frames, and so does a file without clips. Throws InputError if no clip or several
+// clips fit the name, and if no clip moves the surface.
 Frames plan_frames(const Character& character, const Pose& bound, const std::vector<bool>& used,
                    double diagonal, const ImportOptions& options, ImportReport& report);
 

@@ -142,6 +142,7 @@ void require_simple(const ImportOptions& options) {
   ImportOptions plain;
   plain.fps = options.fps;
   plain.survey = options.survey;
+  plain.one_pose = options.one_pose;
   plain.clip_number = options.clip_number;  // of a survey's only clip
   if (options != plain)
     throw InputError(
@@ -232,7 +233,11 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
   const std::filesystem::path file = sequence_file(model);
   const std::unique_ptr<MeshSequence> sequence = open_mesh_sequence(file);
   const std::size_t frames = sequence->frame_count();
-  if (frames < 2) throw InputError("holds one frame, and nothing moves; export more");
+  if (frames < 2 && !options.one_pose)
+    throw InputError(
+        "is one pose, and nothing moves; name one file of a sequence, as in walk.0001.obj, whose other "
+        "frames "
+        "lie beside it");
   const Surface surface = surface_of(*sequence);
   const TriangleMesh mesh(surface.triangles, surface.vertex.size());
   if (frames > limits.frames || frames * surface.vertex.size() * sizeof(Vec3) > limits.cache_bytes)
@@ -261,8 +266,8 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
 
   PointCacheWriter writer(cache, {surface.triangles, surface.vertex.size(), {}, false}, false);
   std::vector<Vec3> all, used(surface.vertex.size());
-  for (std::size_t frame = 0; frame < (options.survey ? 2 : frames); ++frame) {
-    sequence->read_frame(frame, all);
+  for (std::size_t frame = 0; frame < (options.survey ? 2 : std::max<std::size_t>(2, frames)); ++frame) {
+    sequence->read_frame(std::min(frame, frames - 1), all);  // a cache has two frames, those of one pose too
     for (std::size_t v = 0; v < used.size(); ++v) used[v] = all[static_cast<std::size_t>(surface.vertex[v])];
     writer.append({used, {}});
   }

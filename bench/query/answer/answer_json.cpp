@@ -115,7 +115,9 @@ json contact_json(const Input& input, const SurfaceNames& names, const Contact& 
   return out;
 }
 
-json moment_json(const Input& input, const ClipMoment& moment) {
+// The last pose starts no interval: its moment is the end of the last one.
+json moment_json(const Input& input, ClipMoment moment) {
+  if (moment.interval == input.clip->interval_count()) moment = {moment.interval - 1, 1};
   const std::optional<double> seconds = second_of(input, moment);
   return {{"interval", moment.interval},
           {"time", moment.time},
@@ -136,6 +138,7 @@ json event_json(const Input& input, const OverlapEvent& event) {
           {"deepest", moment(event.deepest)},
           {"ends", moment(event.last)},
           {"depth", {{"at_least", event.depth.lower}, {"at_most", event.depth.upper}}},
+          {"at_rest", event.at_rest ? json(*event.at_rest) : json()},
           {"point", vector_json(event.point)},
           {"out", event.depth.nearest == TriangleId{-1} ? json() : vector_json(event.depth.out)},
           {"vertices", event.vertices},
@@ -148,23 +151,16 @@ json event_json(const Input& input, const OverlapEvent& event) {
           {"depth_at", event.depth_at}};
 }
 
-json interval_json(const ClipAnswer& clip, const IntervalAnswer& answer, std::size_t most_start_pairs) {
-  const Input& input = clip.input;
-  const Motion motion = input.clip->load(answer.index).motion;
-  const bool is_thick = input.thickness.length > 0;
-  json contacts = json::array(), undecided = json::array(), start_pairs = json::array(), collides;
-  for (std::size_t i = 0; i < answer.found.contacts.size(); ++i) {
-    const Contact& contact = answer.found.contacts[i];
-    json& list = contact.verdict == Verdict::contact ? contacts : undecided;
-    list.push_back(contact_json(input, clip.names, contact, motion));
-    if (i < answer.event_of_contact.size() && answer.event_of_contact[i] != OverlapEvents::kNone)
-      list.back()["event"] = answer.event_of_contact[i];
-    if (!is_thick || &list != &contacts) continue;
-    const auto touch = answer.touching.find(contact.pair);
-    list.back()["touch_time"] = touch == answer.touching.end() ? json() : json(touch->second);
-  }
-  for (std::size_t i = 0; i < std::min(most_start_pairs, answer.start.pairs.size()); ++i)
-    start_pairs.push_back({number(answer.start.pairs[i].first), number(answer.start.pairs[i].second)});
+json pairs_json(std::span<const CrossingPair> pairs, std::size_t most) {
+  json out = json::array();
+  for (std::size_t i = 0; i < std::min(most, pairs.size()); ++i)
+    out.push_back({number(pairs[i].first), number(pairs[i].second)});
+  return out;
+}
+
+// All of an interval but its contacts.
+json interval_json(const Input& input, const IntervalAnswer& answer, std::size_t most_start_pairs) {
+  json collides;
   if (answer.verdict != IntervalVerdict::undecided) collides = answer.verdict != IntervalVerdict::clear;
   const std::optional<double> time = answer.time();
   json out = {{"index", answer.index},
@@ -172,13 +168,13 @@ json interval_json(const ClipAnswer& clip, const IntervalAnswer& answer, std::si
               {"collides", collides},
               {"time", time ? json(*time) : json()},
               {"starts_embedded", answer.starts_embedded},
-              {"start_pairs", std::move(start_pairs)},
+              {"start_pairs", pairs_json(answer.start.pairs, most_start_pairs)},
               {"start_pairs_total", answer.start.total},
               {"left_out", {{"start_pairs", answer.rest_pairs}, {"contacts", answer.rest_contacts}}},
               {"ignored",
                {{"start_pairs", answer.ignored_pairs.size()}, {"contacts", answer.ignored.contacts.size()}}},
-              {"contacts", std::move(contacts)},
-              {"undecided", std::move(undecided)},
+              {"contacts", json()},
+              {"undecided", json()},
               {"strategy", answer.strategy->name},
               {"proven", answer.proven},
               {"counts", counts_json(answer.report)},
@@ -186,12 +182,46 @@ json interval_json(const ClipAnswer& clip, const IntervalAnswer& answer, std::si
   out["ms"]["embedding"] = answer.embedding_ms;
   out["ms"]["load"] = answer.load_ms;
   out["ms"]["wall"] = answer.wall_ms;
-  if (is_thick) out["touching"] = answer.touching.size(), out["close_at_start"] = answer.close_at_start;
+  if (input.thickness.length > 0)
+    out["touching"] = answer.touching.size(), out["close_at_start"] = answer.close_at_start;
   if (answer.motion) out["true_motion"] = true_motion_json(input, answer);
   const json start = moment_json(input, {answer.index, 0});
   out["frame"] = start["frame"];
   out["seconds"] = start["seconds"];
   return out;
+}
+
+// The contacts of an interval, or those of which it is not decided whether they are any.
+void write_contacts(JsonStream& out, const ClipAnswer& clip, const IntervalAnswer& answer,
+                    const Motion& motion, bool undecided) {
+  const bool is_thick = clip.input.thickness.length > 0;
+  out.begin_array();
+  for (std::size_t i = 0; i < answer.found.contacts.size(); ++i) {
+    const Contact& contact = answer.found.contacts[i];
+    if ((contact.verdict == Verdict::contact) == undecided) continue;
+    json one = contact_json(clip.input, clip.names, contact, motion);
+    if (i < answer.event_of_contact.size() && answer.event_of_contact[i] != OverlapEvents::kNone)
+      one["event"] = answer.event_of_contact[i];
+    if (is_thick && !undecided) {
+      const auto touch = answer.touching.find(contact.pair);
+      one["touch_time"] = touch == answer.touching.end() ? json() : json(touch->second);
+    }
+    out.value(one);
+  }
+  out.end();
+}
+
+// What crosses in the clip's last pose, which starts no interval.
+json last_pose_json(const ClipAnswer& answer, std::size_t most_start_pairs) {
+  if (!answer.last_pose) return nullptr;
+  const IntervalAnswer& pose = *answer.last_pose;
+  const json moment = moment_json(answer.input, {pose.index, 0});
+  return {{"frame", moment["frame"]},
+          {"seconds", moment["seconds"]},
+          {"pairs", pairs_json(pose.start.pairs, most_start_pairs)},
+          {"pairs_total", pose.start.total},
+          {"left_out", pose.rest_pairs},
+          {"ignored", pose.ignored_pairs.size()}};
 }
 
 // What was asked to be ignored; null for nothing.
@@ -209,7 +239,10 @@ json rest_json(const ClipAnswer& answer) {
   json parts = json::array();
   for (const auto& [pair, count] : pairs_by_part(answer.names, answer.input.mesh, answer.rest))
     parts.push_back({{"first", pair.first}, {"second", pair.second}, {"pairs", count}});
-  return {{"pairs", answer.rest.total}, {"left_out", answer.rest_left_out}, {"parts", std::move(parts)}};
+  return {{"pairs", answer.rest.total},
+          {"touching", answer.rest_touching.total},
+          {"left_out", answer.rest_left_out},
+          {"parts", std::move(parts)}};
 }
 
 json summary_json(const ClipAnswer& answer) {
@@ -268,18 +301,53 @@ json summary_json(const ClipAnswer& answer) {
   return out;
 }
 
-json clip_json(const ClipAnswer& answer, std::size_t most_start_pairs) {
-  json intervals = json::array();
-  for (const IntervalAnswer& interval : answer.intervals)
-    intervals.push_back(interval_json(answer, interval, most_start_pairs));
-  json out = {{"strategy", answer.strategy.name},     {"guarantee", to_string(answer.strategy.guarantee)},
-              {"elementary", answer.elementary.name}, {"threads", answer.threads},
-              {"first_only", answer.first_only},      {"rest_crossings", rest_json(answer)},
-              {"ignore", ignored_json(answer.input)}, {"summary", summary_json(answer)},
-              {"intervals", std::move(intervals)}};
-  if (asks_distances(answer.input)) out["thickness"] = thickness_json(answer);
-  if (answer.input.import) out["import"] = import_json(*answer.input.import);
-  return out;
+ClipJson::ClipJson(JsonStream& out, const ClipAnswer& answer, const std::string& input,
+                   std::size_t most_start_pairs)
+    : out_(out), most_start_pairs_(most_start_pairs) {
+  json head = {{"elementary", answer.elementary.name},
+               {"first_only", answer.first_only},
+               {"guarantee", to_string(answer.strategy.guarantee)},
+               {"identical_triangles", identical_triangles(answer.input.mesh)},
+               {"ignore", ignored_json(answer.input)},
+               {"input", input}};
+  if (answer.input.import) head["import"] = import_json(*answer.input.import);
+  out_.begin_object();
+  for (const auto& [key, value] : head.items()) {
+    out_.key(key);
+    out_.value(value);
+  }
+  out_.key("intervals");
+  out_.begin_array();
+}
+
+void ClipJson::add(const ClipAnswer& answer, const IntervalAnswer& interval, const Motion& motion) {
+  const json members = interval_json(answer.input, interval, most_start_pairs_);
+  out_.begin_object();
+  for (const auto& [key, value] : members.items()) {
+    out_.key(key);
+    if (key == "contacts" || key == "undecided")
+      write_contacts(out_, answer, interval, motion, key == "undecided");
+    else
+      out_.value(value);
+  }
+  out_.end();
+}
+
+void ClipJson::finish(const ClipAnswer& answer) {
+  out_.end();
+  json tail = {{"last_pose", last_pose_json(answer, most_start_pairs_)},
+               {"one_pose", answer.input.is_one_pose},
+               {"rest_crossings", rest_json(answer)},
+               {"schema", kQuerySchema},
+               {"strategy", answer.strategy.name},
+               {"summary", summary_json(answer)},
+               {"threads", answer.threads}};
+  if (asks_distances(answer.input)) tail["thickness"] = thickness_json(answer);
+  for (const auto& [key, value] : tail.items()) {
+    out_.key(key);
+    out_.value(value);
+  }
+  out_.end();
 }
 
 }  // namespace cscd::bench

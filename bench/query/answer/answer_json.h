@@ -3,14 +3,29 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
+#include "bench/cli/output/json_stream.h"
 #include "bench/query/answer/clip_answer.h"
 
 // Answers as JSON. Every field is described in query.schema.json.
 namespace cscd::bench {
 
-// All of an answer. Reads the clip once more, for where contacts lie. Up to `most_start_pairs` of the pairs
-// that cross at the start of an interval are listed.
-nlohmann::json clip_json(const ClipAnswer& answer, std::size_t most_start_pairs);
+inline constexpr char kQuerySchema[] = "cscd.query/3";
+
+// Writes all of an answer, interval by interval, so that a document is not limited by memory.
+class ClipJson {
+ public:
+  // Begins the document of an answer of which no interval is known yet. `input` is the input as it was given,
+  // and up to `most_start_pairs` of the pairs that cross in a pose are listed. `out` must outlive the object.
+  ClipJson(JsonStream& out, const ClipAnswer& answer, const std::string& input, std::size_t most_start_pairs);
+
+  void add(const ClipAnswer& answer, const IntervalAnswer& interval, const Motion& motion);
+  // Ends the document: `answer` now holds the sums.
+  void finish(const ClipAnswer& answer);
+
+ private:
+  JsonStream& out_;
+  std::size_t most_start_pairs_;
+};
 
 // The sums alone.
 nlohmann::json summary_json(const ClipAnswer& answer);

@@ -149,11 +149,16 @@ std::string with_itself_or_in(const NamePair& both, const char* in) {
   return both.first + (both.first == both.second ? " with itself: " : in + both.second + ": ");
 }
 
-std::string apart_text(const AnswerSummary& s) {
+std::string exceptions_text(const ClipAnswer& answer) {
   std::string out;
-  for (const std::string& each : verdict_exceptions(s))
-    out += (out.empty() ? ", apart from " : " and ") + each;
+  for (const std::string& each : verdict_exceptions(answer)) out += (out.empty() ? "" : " and ") + each;
   return out;
+}
+
+// Behind a verdict that says that something touches.
+std::string apart_text(const ClipAnswer& answer) {
+  const std::string exceptions = exceptions_text(answer);
+  return exceptions.empty() ? "" : ", apart from " + exceptions;
 }
 
 std::string frames_text(const ClipAnswer& answer) {
@@ -170,16 +175,28 @@ std::string verdict_predicate(const ClipAnswer& answer) {
   const std::size_t touch = s.count(IntervalVerdict::touches), close = s.count(IntervalVerdict::close),
                     cross = s.count(IntervalVerdict::intersects_at_start),
                     undecided = s.count(IntervalVerdict::undecided);
-  const std::string apart = apart_text(s);
+  const std::string apart = apart_text(answer);
+  if (input.is_one_pose) {
+    if (cross > 0)
+      return "crosses itself in its one pose" + apart + ": " + many(s.worst->start_pairs, "pair") +
+             " of triangles, " + meeting_text(s.first->names, "crosses");
+    if (close > 0)
+      return "comes within " + input.thickness.asked.thickness.text + " of itself in its one pose" + apart +
+             ": " + meeting_text(s.first->names, "comes close to");
+  }
   if (!collides(s.verdict())) {
-    const std::string frames = frames_text(answer);
+    const std::string frames = input.is_one_pose ? " in its one pose" : frames_text(answer);
     if (undecided > 0)
       return "may touch itself" + frames + apart + ": the elementary test could not tell in " +
              of_intervals(undecided, s) + "; ask again with another --elementary";
+    const std::string near =
+        is_thick ? "within " + input.thickness.asked.thickness.text + " of itself" : "itself";
+    const std::string exceptions = exceptions_text(answer);
+    const std::string where = s.moves || input.is_one_pose ? frames : "";
     const std::string clear =
-        is_thick ? "does not come within " + input.thickness.asked.thickness.text + " of itself"
-                 : "does not touch itself";
-    return s.moves ? clear + frames + apart : "does not move" + frames + ", and " + clear + apart;
+        exceptions.empty() ? (is_thick ? "does not come " : "does not touch ") + near + where
+                           : (is_thick ? "comes " : "touches ") + near + where + " only in " + exceptions;
+    return (where.empty() ? "does not move" + frames + ", and " : "") + clear;
   }
   std::string text;
   if (cross > 0) text = "crosses itself at the start of " + of_intervals(cross, s);
@@ -198,7 +215,8 @@ std::string verdict_predicate(const ClipAnswer& answer) {
 
 // What is said below the verdict, without full stops; empty where there is nothing to say.
 struct Sentences {
-  std::string lines, counts, thickness, worst, met, ignored, rest, coinciding, proven, rate, choice;
+  std::string lines, counts, thickness, worst, met, ignored, rest, touching, coinciding, last, identical,
+      proven, rate, choice;
 };
 
 Sentences sentences(const ClipAnswer& answer) {
@@ -208,6 +226,11 @@ Sentences sentences(const ClipAnswer& answer) {
   if (input.motion)
     out.lines = "straight lines between frames, of which the rest speaks: it " + verdict_predicate(answer);
   out.thickness = thickness_text(answer);
+  if (answer.last_pose && answer.last_pose->start.total > 0)
+    out.last = "ends crossed: " + many(answer.last_pose->start.total, "pair") +
+               " of triangles cross in its last pose, " + moment_text(input, {answer.last_pose->index, 0});
+  if (const std::size_t twins = identical_triangles(input.mesh); twins > 0)
+    out.identical = identical_text(twins);
   out.counts =
       many(s.intervals(), "interval") + ": " + std::to_string(s.count(IntervalVerdict::clear)) + " clear, " +
       (input.thickness.length > 0 ? std::to_string(s.count(IntervalVerdict::close)) + " close, " : "") +
@@ -224,18 +247,19 @@ Sentences sentences(const ClipAnswer& answer) {
   }
   if (!s.met.empty()) out.met = "met: " + listed(s.met, met_text);
   if (input.ignored) out.ignored = ignored_text(input, s);
+  // A simulation that starts crossed has no pose at rest, and what it begins with may be what is looked
+  // for.
+  const std::string at = input.clip->header().rest.empty()
+                             ? "at rest (the first frame, as the input names no pose at rest): "
+                             : "at rest: ";
   if (answer.rest.total > 0) {
     const AtRest rest = at_rest(answer);
     const std::string counted = answer.rest_left_out ? "; left out of " + many(s.with_left_out, "interval") +
                                                            ", with " + many(s.left_out_contacts, "contact") +
                                                            " (--keep-rest-crossings counts both)"
                                                      : "; counted, as asked";
-    // A simulation that starts crossed has no pose at rest, and what it begins with may be what is looked
-    // for.
-    const bool is_first_frame = input.clip->header().rest.empty();
     if (!rest.crossing.empty())
-      out.rest = std::string("crosses at rest") +
-                 (is_first_frame ? " (the first frame, as the input names no pose at rest): " : ": ") +
+      out.rest = "crosses " + at +
                  listed(rest.crossing,
                         [](const NamePair& both, std::size_t count) {
                           return with_itself_or_in(both, " in ") + many(count, "pair");
@@ -251,6 +275,13 @@ Sentences sentences(const ClipAnswer& answer) {
                               }) +
                        (out.rest.empty() || !answer.rest_left_out ? counted : "; left out with those");
   }
+  if (answer.rest_touching.total > 0)
+    out.touching = "only touches " + at +
+                   listed(pairs_by_part(answer.names, input.mesh, answer.rest_touching),
+                          [](const NamePair& both, std::size_t count) {
+                            return with_itself_or_in(both, " on ") + many(count, "pair");
+                          }) +
+                   "; counted, as nothing lies in it (--ignore A:B leaves two parts out)";
   std::string answered;
   for (const auto& [name, count] : s.strategies)
     answered += (answered.empty() ? "" : ", ") + name +
@@ -268,12 +299,22 @@ Sentences sentences(const ClipAnswer& answer) {
 
 }  // namespace
 
-std::vector<std::string> verdict_exceptions(const AnswerSummary& s) {
+std::vector<std::string> verdict_exceptions(const ClipAnswer& answer) {
+  const AnswerSummary& s = answer.summary;
   std::vector<std::string> out;
-  if (s.with_left_out > 0) out.push_back("what crosses at rest");
+  const bool is_deeper =
+      std::ranges::any_of(answer.events, [](const OverlapEvent& event) { return event.at_rest.has_value(); });
+  if (s.with_left_out > 0 || is_deeper)
+    out.push_back(is_deeper ? "what crosses at rest, which comes to lie deeper than there"
+                            : "what crosses at rest");
   if (s.with_ignored > 0) out.push_back("what is ignored");
   if (s.with_old > 0) out.push_back("what lies in itself already");
   return out;
+}
+
+std::string identical_text(std::size_t triangles) {
+  return many(triangles, "triangle") + (triangles == 1 ? " has" : " have") +
+         " the same three corners as another one: two such are never held against each other";
 }
 
 std::string event_text(const Input& input, const OverlapEvent& event) {
@@ -285,6 +326,7 @@ std::string event_text(const Input& input, const OverlapEvent& event) {
   out += event.depth.lower > kRounding * event.depth.upper
              ? distance_text(input, event.depth.lower) + " deep (" + most + ")"
              : most + " deep, depth not known";
+  if (event.at_rest) out += ", deeper than at rest (" + distance_text(input, *event.at_rest) + ")";
   if (event.vertices > 0) out += ", " + many(event.vertices, "vertex");
   const auto frame = [&](std::size_t interval) { return frame_text(frame_of(input, {interval, 0})); };
   if (event.first == event.last) return out + ", frame " + frame(event.first);
@@ -304,15 +346,15 @@ DepthCheck check_depth(const ClipAnswer& answer, const WrittenLength& most) {
     return {true, limit + "fails, because something lies deeper: " + distance_text(answer.input, lower)};
   std::string text = limit + "passes: nothing is known to lie deeper";
   if (upper > length) text += ", and something may lie up to " + distance_text(answer.input, upper) + " deep";
-  text += "; the clip's last pose was not looked at";
-  return {false,
-          text + (answer.rest.total > 0 && answer.rest_left_out ? ", nor was what crosses at rest" : "")};
+  if (answer.rest.total > 0 && answer.rest_left_out)
+    text += "; what crosses at rest counts where it lies deeper than there";
+  return {false, text};
 }
 
 std::string verdict_sentence(const ClipAnswer& answer) {
   const std::string predicate =
       answer.input.motion
-          ? true_predicate(answer.input, answer.true_motion, frames_text(answer), apart_text(answer.summary))
+          ? true_predicate(answer.input, answer.true_motion, frames_text(answer), exceptions_text(answer))
           : verdict_predicate(answer);
   return subject_of(answer.input) + " " + predicate + ".";
 }
@@ -351,8 +393,9 @@ std::string clip_text(const ClipAnswer& answer) {
   const AnswerSummary& s = answer.summary;
   const Sentences said = sentences(answer);
   std::string out = verdict_sentence(answer) + "\n" + true_motion_text(answer.input, answer.true_motion);
-  for (const std::string* line : {&said.lines, &said.counts, &said.thickness, &said.worst, &said.met,
-                                  &said.ignored, &said.rest, &said.coinciding, &said.proven})
+  for (const std::string* line :
+       {&said.lines, &said.counts, &said.thickness, &said.worst, &said.met, &said.ignored, &said.rest,
+        &said.touching, &said.coinciding, &said.last, &said.identical, &said.proven})
     if (!line->empty()) out += "  " + *line + "\n";
   out += events_text(answer);
   return out + "  took " + short_text(s.wall_ms) + " ms: " + short_text(s.query_ms) + " to find contacts, " +
@@ -366,7 +409,8 @@ std::string brief_clip_text(const ClipAnswer& answer) {
   std::string out = verdict_sentence(answer) + "\n" + not_measured_text(answer);
   const Sentences said = sentences(answer);
   if (answer.summary.proven < answer.summary.intervals()) out += "  " + said.proven + "\n";
-  for (const std::string* line : {&said.ignored, &said.rest, &said.coinciding})
+  for (const std::string* line :
+       {&said.ignored, &said.rest, &said.touching, &said.coinciding, &said.last, &said.identical})
     if (!line->empty()) out += "  " + *line + "\n";
   if (!answer.events.empty())
     out += "  lies in itself in " + many(answer.events.size(), "place") +
@@ -378,8 +422,9 @@ std::string brief_clip_text(const ClipAnswer& answer) {
 std::string details_text(const ClipAnswer& answer) {
   const Sentences said = sentences(answer);
   std::string out;
-  for (const std::string* sentence : {&said.lines, &said.counts, &said.thickness, &said.worst, &said.ignored,
-                                      &said.rest, &said.coinciding, &said.proven, &said.rate, &said.choice}) {
+  for (const std::string* sentence :
+       {&said.lines, &said.counts, &said.thickness, &said.worst, &said.ignored, &said.rest, &said.touching,
+        &said.coinciding, &said.last, &said.identical, &said.proven, &said.rate, &said.choice}) {
     if (sentence->empty()) continue;
     std::string capital = *sentence;
     capital[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(capital[0])));

@@ -110,6 +110,22 @@ IntervalVerdict AnswerSummary::verdict() const {
   return IntervalVerdict::clear;
 }
 
+std::size_t identical_triangles(const TriangleMesh& mesh) {
+  const auto found =
+      std::ranges::find(mesh.defects(), Defect::duplicate_triangle, &TriangleMesh::DefectReport::kind);
+  return found == mesh.defects().end() ? 0 : found->count;
+}
+
+std::optional<IntervalAnswer> last_pose_of(const Input& input, std::size_t frame, Answerer& answerer,
+                                           OverlapEvents& events) {
+  if (input.is_one_pose) return std::nullopt;
+  IntervalAnswer answer = answerer.pose(frame);
+  answer.found.contacts.clear();  // those of the pose are no contacts of an interval
+  answer.touching.clear();
+  events.add(answer, input.clip->load_frame(frame).positions, {});
+  return answer;
+}
+
 ClipAnswer prepared_answer(const Input& input, const SurfaceNames& names, const Strategy& strategy,
                            const ElementaryTest& elementary, const AnswerOptions& options,
                            const Answerer& answerer) {
@@ -121,7 +137,8 @@ ClipAnswer prepared_answer(const Input& input, const SurfaceNames& names, const 
                  !options.keep_rest_crossings,
                  answerer.threads(),
                  answerer.preparation_ms(),
-                 answerer.rest_crossings()};
+                 answerer.rest_crossings(),
+                 answerer.rest_touching()};
   if (const Exclusions* const left_out = input.thickness.left_out.get()) {
     const ContactSet close = close_at_rest(input);
     out.close_at_rest = close.contacts.size();

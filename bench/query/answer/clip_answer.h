@@ -90,23 +90,36 @@ struct ClipAnswer {
   bool first_only = false, rest_left_out = true;  // as was asked
   int threads = 1;
   double preparation_ms = 0;
-  Crossings rest = {};  // what crosses at rest
+  Crossings rest = {}, rest_touching = {};  // what crosses at rest, and what only touches there
   // Pairs of features that are close at rest, and those of them that are left out by InputThickness; counted
   // only where some may be.
   std::size_t close_at_rest = 0, left_out_at_rest = 0;
   AnswerSummary summary = {};
-  std::vector<OverlapEvent> events = {};       // in the order in which they begin
-  std::size_t not_measured = 0;                // starts of which events say nothing (OverlapEvents)
-  TrueSummary true_motion = {};                // of no interval where it was not asked for
-  std::vector<IntervalAnswer> intervals = {};  // empty where nobody asks for single intervals
+  std::vector<OverlapEvent> events = {};  // in the order in which they begin
+  std::size_t not_measured = 0;           // starts of which events say nothing (OverlapEvents)
+  TrueSummary true_motion = {};           // of no interval where it was not asked for
+  // Of the frame in which the last interval ends, as an interval that starts there; none of a file of one
+  // pose.
+  std::optional<IntervalAnswer> last_pose = {};
 
-  // Takes the events of all intervals, and the milliseconds that it took to find them.
-  void take(const OverlapEvents& found) {
+  // Takes what last_pose_of() says, then the events of all poses, and the milliseconds that it took to find
+  // them.
+  void take(std::optional<IntervalAnswer> last, const OverlapEvents& found) {
+    last_pose = std::move(last);
     events = found.all();
     not_measured = found.not_measured();
     summary.overlap_ms = found.milliseconds();
   }
 };
+
+// How many triangles of a surface have the same three corners as another one. Two such triangles share all
+// that they have, so that nothing is said of them against each other.
+std::size_t identical_triangles(const TriangleMesh& mesh);
+
+// Answers the frame in which the last interval ends, after that interval, and adds what overlaps there to the
+// events. Returns nothing for a file of one pose, whose intervals start in it.
+std::optional<IntervalAnswer> last_pose_of(const Input& input, std::size_t frame, Answerer& answerer,
+                                           OverlapEvents& events);
 
 // Returns the answer of which no interval is known yet. The arguments must outlive it.
 ClipAnswer prepared_answer(const Input& input, const SurfaceNames& names, const Strategy& strategy,

@@ -10,14 +10,9 @@
 namespace cscd::bench {
 namespace {
 
-// All pairs that cross at a start, whatever is left out of the answer.
-std::vector<CrossingPair> all_pairs(const IntervalAnswer& answer) {
-  std::vector<CrossingPair> all = answer.start.pairs;
-  all.insert(all.end(), answer.explained_pairs.begin(), answer.explained_pairs.end());
-  all.insert(all.end(), answer.ignored_pairs.begin(), answer.ignored_pairs.end());
-  if (!std::ranges::is_sorted(all)) std::ranges::sort(all);
-  return all;
-}
+// What crosses at rest and bends is a little deeper in most poses: up to this factor, it is as deep as at
+// rest.
+constexpr double kDeeper = 1.1;
 
 CrossingPair pair_of(const std::array<TriangleId, 2>& segment) {
   return std::minmax(segment[0], segment[1]);
@@ -43,18 +38,30 @@ class Votes {
 
 }  // namespace
 
-OverlapEvents::OverlapEvents(const Input& input, const SurfaceNames& names)
-    : input_(input), names_(names), finder_(input.mesh) {}
+OverlapEvents::OverlapEvents(const Input& input, const SurfaceNames& names, const Answerer& answerer)
+    : input_(input), names_(names), answerer_(answerer), finder_(input.mesh) {}
 
-bool OverlapEvents::is_event(const Overlaps& all, const Overlap& overlap,
-                             const IntervalAnswer& answer) const {
-  if (answer.explained_pairs.empty() && answer.ignored_pairs.empty()) return true;
-  std::size_t pairs = 0, counted = 0;
+OverlapEvents::Kind OverlapEvents::kind_of(const Overlaps& all, const Overlap& overlap,
+                                           const IntervalAnswer& answer) const {
+  if (answer.explained_pairs.empty() && answer.ignored_pairs.empty()) return Kind::counted;
+  std::size_t pairs = 0, counted = 0, ignored = 0;
   for_each_segment(all.crossing, overlap, [&](const auto& segment) {
     ++pairs;
     counted += answer.start.contains(pair_of(segment));
+    ignored += std::ranges::binary_search(answer.ignored_pairs, pair_of(segment));
   });
-  return 2 * counted > pairs;
+  if (2 * counted > pairs) return Kind::counted;
+  return 2 * ignored < pairs ? Kind::crosses_at_rest : Kind::ignored;
+}
+
+double OverlapEvents::depth_at_rest(const Overlaps& all, const Overlap& overlap) {
+  if (!rest_) {
+    std::vector<CrossingPair> met;
+    std::ranges::merge(answerer_.rest_crossings().pairs, answerer_.rest_touching().pairs,
+                       std::back_inserter(met));
+    rest_.emplace(input_.mesh, finder_, input_.rest(), met);
+  }
+  return rest_->most_near(all.crossing, overlap);
 }
 
 NamePair OverlapEvents::names_of(const Overlaps& all, const Overlap& overlap) const {
@@ -103,7 +110,8 @@ std::size_t OverlapEvents::continued_event(const Overlaps& all, const Overlap& o
 }
 
 void OverlapEvents::extend(OverlapEvent& event, const Overlaps& all, const Overlap& overlap,
-                           const NamePair& names, std::size_t interval, std::span<const Vec3> start) {
+                           const NamePair& names, std::size_t interval, std::span<const Vec3> start,
+                           const std::optional<double>& at_rest) {
   const bool is_new = event.depth_at.empty();
   if (is_new) event.first = interval;
   event.last = interval;
@@ -117,6 +125,7 @@ void OverlapEvents::extend(OverlapEvent& event, const Overlaps& all, const Overl
   event.curves = overlap.curves.size();
   event.pairs = event.vertices = 0;
   event.area = 0;
+  event.at_rest = at_rest;
   const auto curve = [&](std::int32_t c) -> const CrossingCurve& {
     return all.crossing.curves[static_cast<std::size_t>(c)];
   };
@@ -139,21 +148,26 @@ OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<c
   Here here;
   std::vector<Mark> vertices, pairs;
   std::vector<std::size_t> going_on;
-  const std::size_t crossing =
-      answer.start.total + answer.explained_pairs.size() + answer.ignored_pairs.size();
-  not_measured_ += crossing > kMostPairs;
-  if (answer.start.total > 0 && crossing <= kMostPairs) {
-    here.overlaps = finder_.find(start, all_pairs(answer), wanted.ways);
+  const Crossings all = all_crossings(answer);
+  not_measured_ += all.total > kMostPairs;
+  if (answer.start.total + answer.explained_pairs.size() > 0 && all.total <= kMostPairs) {
+    here.overlaps = finder_.find(start, all.pairs, wanted.ways);
     for (const Overlap& overlap : here.overlaps.overlaps) {
       here.event.push_back(kNone);
-      if (!is_event(here.overlaps, overlap, answer)) continue;
+      const Kind kind = kind_of(here.overlaps, overlap, answer);
+      if (kind == Kind::ignored) continue;
+      std::optional<double> at_rest;
+      if (kind == Kind::crosses_at_rest) {
+        at_rest = depth_at_rest(here.overlaps, overlap);
+        if (!(overlap.depth.lower > kDeeper * *at_rest)) continue;
+      }
       const NamePair names = names_of(here.overlaps, overlap);
       std::size_t event = continued_event(here.overlaps, overlap, names);
       if (event == kNone) {
         event = events_.size();
         events_.emplace_back();
       }
-      extend(events_[event], here.overlaps, overlap, names, answer.index, start);
+      extend(events_[event], here.overlaps, overlap, names, answer.index, start, at_rest);
       here.event.back() = event;
       going_on.push_back(event);
       for (const CrossingRegion& region : overlap.regions)

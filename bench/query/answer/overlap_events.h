@@ -2,11 +2,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
 
 #include "bench/query/answer/answer.h"
+#include "bench/query/answer/rest_depths.h"
 #include "bench/query/answer/surface_names.h"
 #include "core/crossing/overlaps.h"
 #include "core/crossing/pieces.h"
@@ -27,6 +29,8 @@ struct OverlapEvent {
   double area = 0;
   CrossingRegion::Side side = CrossingRegion::Side::behind;
   bool other_is_open = false;
+  // Of pieces that cross at rest: how deep they lie there (RestDepths), which is less than `depth.lower`.
+  std::optional<double> at_rest;
   std::vector<double> depth_at;  // of intervals first to last; 0 where it pauses
   std::size_t contacts = 0;      // of these intervals, between its pieces
 };
@@ -37,11 +41,13 @@ std::vector<std::size_t> deepest_first(std::span<const OverlapEvent> events);
 // Follows overlaps from interval to interval. An overlap continues the event with whose regions it shares
 // most vertices. An overlap that shares no vertex with any continues the event with which it shares most
 // crossing pairs of triangles. If it shares none of these either, it continues an event between the same two
-// places that no other overlap continues. Overlaps of which most pairs of triangles cross at rest, or are
-// ignored, are no events.
+// places that no other overlap continues. Overlaps of which most pairs of triangles are ignored are no
+// events. Those of which most pairs are left out because they cross at rest are events where they lie deeper
+// than at rest by more than a tenth.
 class OverlapEvents {
  public:
-  OverlapEvents(const Input& input, const SurfaceNames& names);  // both must outlive it
+  // `answerer` has found what meets at rest. All arguments must outlive it.
+  OverlapEvents(const Input& input, const SurfaceNames& names, const Answerer& answerer);
 
   // `start` are the positions at the interval's start. Intervals come in growing order. Returns what overlaps
   // there, with the number of each one's event.
@@ -74,15 +80,21 @@ class OverlapEvents {
   using Mark =
       std::tuple<std::int32_t, std::int32_t, std::size_t>;  // what two numbers stand for, and the event
 
-  bool is_event(const Overlaps& all, const Overlap& overlap, const IntervalAnswer& answer) const;
+  // What an overlap is, by most of its pairs of triangles.
+  enum class Kind { counted, crosses_at_rest, ignored };
+  Kind kind_of(const Overlaps& all, const Overlap& overlap, const IntervalAnswer& answer) const;
+  // How deep the overlap lies at rest.
+  double depth_at_rest(const Overlaps& all, const Overlap& overlap);
   std::size_t continued_event(const Overlaps& all, const Overlap& overlap, const NamePair& names);
   NamePair names_of(const Overlaps& all, const Overlap& overlap) const;
   void extend(OverlapEvent& event, const Overlaps& all, const Overlap& overlap, const NamePair& names,
-              std::size_t interval, std::span<const Vec3> start);
+              std::size_t interval, std::span<const Vec3> start, const std::optional<double>& at_rest);
 
   const Input& input_;
   const SurfaceNames& names_;
+  const Answerer& answerer_;
   OverlapFinder finder_;
+  std::optional<RestDepths> rest_;  // once it is asked for
   std::vector<OverlapEvent> events_;
   std::vector<Mark> vertices_, pairs_;  // of the last interval; sorted, pairs only once they are needed
   bool pairs_are_sorted_ = false;

@@ -23,7 +23,7 @@ std::vector<OverlapEvent> events_of(Input& input, std::size_t& contacts_within, 
   const SurfaceNames names(input);
   Answerer answerer(input, complete_reference(), elementary_test_named("exact"),
                     {.keep_rest_crossings = keep_rest});
-  OverlapEvents events(input, names);
+  OverlapEvents events(input, names, answerer);
   contacts_within = 0;
   for (std::size_t i = 0; i < input.clip->interval_count(); ++i) {
     const IntervalAnswer answer = answerer.answer(i);

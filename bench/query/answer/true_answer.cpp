@@ -23,11 +23,12 @@ constexpr double kAtKey = 1e-5;
 // differ by this share of the largest coordinate.
 constexpr double kSamePlace = 1e-5;
 
-TrueMotionOptions options_of(const Input& input, const RestCrossings& left_out,
-                             const AnswerOptions& options) {
+TrueMotionOptions options_of(const Input& input, const RestCrossings& left_out, const AnswerOptions& options,
+                             const std::optional<WrittenLength>& resolution) {
   if (input.thickness.length > 0)
     throw InputError("--true-motion: takes no --thickness; leave one of the two out");
   TrueMotionOptions out = true_motion_options(input.thickness.edge);
+  if (resolution) out.resolution = resolution->length(input.thickness.edge);
   out.ignored = input.ignored ? &input.ignored->triangles : nullptr;
   out.left_out = options.keep_rest_crossings ? nullptr : &left_out;
   return out;
@@ -86,14 +87,15 @@ std::string first_text(const Input& input, const TrueSummary::Meeting& first) {
 }  // namespace
 
 TrueAnswerer::TrueAnswerer(const Input& input, const ElementaryTest& elementary, const Crossings& rest,
-                           const AnswerOptions& options)
+                           const AnswerOptions& options, const std::optional<WrittenLength>& resolution)
     : input_(input),
       left_out_(input.mesh, rest),
       motion_(*input.motion, input.setup(elementary), complete_fallback(),
-              options_of(input, left_out_, options)) {}
+              options_of(input, left_out_, options, resolution)) {}
 
 void TrueAnswerer::answer(const Motion& straight, IntervalAnswer& answer) {
   const Stopwatch asking;
+  left_out_.follow(all_crossings(answer));
   const double from = second_of(input_, answer.index), to = second_of(input_, answer.index + 1);
   if (answer.verdict == IntervalVerdict::intersects_at_start) {
     answer.motion = crossing_at(from);
@@ -156,7 +158,8 @@ void TrueSummary::add(const IntervalAnswer& answer, const SurfaceNames& names) {
 }
 
 std::string true_predicate(const Input& input, const TrueSummary& s, const std::string& frames,
-                           const std::string& apart) {
+                           const std::string& exceptions) {
+  const std::string apart = exceptions.empty() ? "" : ", apart from " + exceptions;
   const auto in = [&](TrueVerdict verdict) {
     return " in " + std::to_string(s.count(verdict)) + " of " + std::to_string(s.intervals) +
            " intervals of its true motion";
@@ -176,7 +179,8 @@ std::string true_predicate(const Input& input, const TrueSummary& s, const std::
     case IntervalVerdict::undecided:
       return "may touch itself, which is undecided" + in(TrueVerdict::undecided) + apart;
     case IntervalVerdict::clear:
-      return "does not touch itself in its true motion" + frames + apart;
+      return (exceptions.empty() ? "does not touch itself" : "touches itself") +
+             (" in its true motion" + frames) + (exceptions.empty() ? "" : " only in " + exceptions);
   }
   text += apart;
   return s.first ? text + ", first " + first_text(input, *s.first) : text;

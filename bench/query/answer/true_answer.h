@@ -14,11 +14,13 @@ namespace cscd::bench {
 
 class TrueAnswerer {
  public:
-  // Throws InputError where the input or the elementary test does not fit. All arguments must outlive it.
+  // Throws InputError where the input or the elementary test does not fit. `rest` is what crosses at rest.
+  // All arguments must outlive it.
   TrueAnswerer(const Input& input, const ElementaryTest& elementary, const Crossings& rest,
-               const AnswerOptions& options);
+               const AnswerOptions& options, const std::optional<WrittenLength>& resolution = {});
 
   // Adds to an answer about straight lines, whose motion is given, what is known of the true motion.
+  // Intervals come in growing order.
   void answer(const Motion& straight, IntervalAnswer& answer);
   // Where all vertices are at a second of the clip.
   std::span<const Vec3> positions_at(double seconds) { return motion_.positions_at(seconds); }
@@ -59,9 +61,9 @@ struct TrueSummary {
 };
 
 // What the clip does in its true motion, as the predicate of a sentence. `frames` are those that were asked
-// about, and `apart` what is left out, behind a comma.
+// about, and `exceptions` says what is left out; empty for nothing.
 std::string true_predicate(const Input& input, const TrueSummary& summary, const std::string& frames,
-                           const std::string& apart);
+                           const std::string& exceptions);
 // Lines for people, of two blanks and a sentence each; empty where no true motion was asked for and none is
 // known.
 std::string true_motion_text(const Input& input, const TrueSummary& summary);

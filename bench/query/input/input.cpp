@@ -143,6 +143,10 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   input.motion = std::move(motion);
   const bool named = !options.import.clip.empty() || options.import.clip_number;
   input.clip_was_named = named || options.import.survey || !input.import || input.import->clips.size() < 2;
+  if (input.import && !options.import.survey && input.import->lead_in == 0) {
+    const long chosen = input.import->chosen_clip;
+    input.is_one_pose = chosen < 0 || input.import->clips[static_cast<std::size_t>(chosen)].frames < 2;
+  }
   input.up = std::move(up);
   return input;
 }

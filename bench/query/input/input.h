@@ -48,6 +48,7 @@ struct Input {
   // How the vertices of a model file move between frames; null where that is not asked for.
   std::shared_ptr<const VertexPaths> motion = nullptr;
   bool clip_was_named = true;                 // else it is the first clip that moves
+  bool is_one_pose = false;                   // of a model file that nothing moves: both frames are this pose
   int threads = 1;                            // for whatever can use them
   bool use_bones = true;                      // for strategies that can do without
   std::vector<std::byte> preparation = {};    // of an earlier run; empty for none

@@ -77,7 +77,23 @@ void add_thickness_options(CLI::App& command, ThicknessRequest& request) {
       ->type_name("R");
 }
 
+void add_resolution_option(CLI::App& command, AnswerRequest& request) {
+  command
+      .add_option_function<std::string>(
+          "--resolution",
+          [&request](const std::string& text) { request.resolution = parse_length("--resolution", text); },
+          "with --true-motion, what comes this near is looked at until it is told whether it touches, or is "
+          "too\n"
+          "close to tell; a length as for --thickness, default 0.01e. Less takes longer")
+      ->type_name("R");
+}
+
 void require_sound(const AnswerRequest& request) {
+  if (request.resolution && !request.model.true_motion)
+    throw InputError("--resolution: is for --true-motion; leave it out, or add that");
+  if (request.resolution && request.resolution->number == 0)
+    throw InputError(
+        "--resolution 0: what only touches would be looked at without end; give a length above 0");
   const ElementaryTest& elementary = elementary_test_named(request.elementary);
   require_fit(request.thickness, elementary);
   // With --first, the time up to which pairs are looked at has to be right.

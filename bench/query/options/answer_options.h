@@ -19,6 +19,7 @@ struct AnswerRequest {
   IgnoreRequest ignored;
   ThicknessRequest thickness;
   std::optional<double> interval_seconds;
+  std::optional<WrittenLength> resolution;  // with --true-motion
   int threads = 1;
   ModelOptions model;
 };
@@ -33,6 +34,9 @@ void add_ignore_options(CLI::App& command, IgnoreRequest& request);
 void add_thickness_options(CLI::App& command, ThicknessRequest& request);
 // --thickness alone.
 void add_thickness_option(CLI::App& command, ThicknessRequest& request);
+
+// --resolution, of commands that take --true-motion. `request` must live as long as the command.
+void add_resolution_option(CLI::App& command, AnswerRequest& request);
 
 // Throws InputError where options do not go together.
 void require_sound(const AnswerRequest& request);

@@ -69,8 +69,10 @@ class StrategyRecording {
   StrategyRecording(ClipAnswer answer, const ViewGrid& grid);
 
   void add(const IntervalAnswer& answer, const scenes::ClipInterval& interval, TextTable& places);
-  // Takes the events of all intervals, and the milliseconds that it took to find them.
-  void take(const OverlapEvents& events) { answer_.take(events); }
+  // See ClipAnswer::take().
+  void take(std::optional<IntervalAnswer> last, const OverlapEvents& events) {
+    answer_.take(std::move(last), events);
+  }
   const ClipAnswer& answer() const { return answer_; }
   bool has_clusters() const { return !prepared_.preparation.atomic_cluster.empty(); }
 

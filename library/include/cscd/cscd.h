@@ -163,7 +163,8 @@ class CSCD_EXPORT SelfCollision {
 
   struct Answer {
     // Pairs of faces that cross at the start, outside the vertices and edges that they share; the smaller
-    // index comes first. The contacts are right from such a start too.
+    // index comes first. Two faces with the same three corners share all that they have, and are no such
+    // pair. The contacts are right from such a start too.
     std::vector<std::array<int, 2>> start_crossings;
     std::vector<Contact> contacts;  // by time
 

@@ -1,0 +1,41 @@
+#include "bench/query/answer/rest_depths.h"
+
+#include <algorithm>
+
+#include "core/base/sort_unique.h"
+#include "core/detect/start/rest_crossings.h"
+
+namespace cscd::bench {
+
+RestDepths::RestDepths(const TriangleMesh& mesh, OverlapFinder& finder, std::span<const Vec3> rest,
+                       std::span<const CrossingPair> pairs) {
+  const Overlaps all = finder.find(rest, pairs);
+  for (std::size_t i = 0; i < all.overlaps.size(); ++i) {
+    const CrossingDepth& depth = all.overlaps[i].depth;
+    depth_.push_back(depth.lower > 0 ? depth.lower : depth.upper);
+    std::vector<TriangleId> crossed;
+    for_each_segment(all.crossing, all.overlaps[i], [&](const auto& segment) {
+      crossed.insert(crossed.end(), segment.begin(), segment.end());
+    });
+    sort_unique(crossed);
+    for (const TriangleId center : crossed)
+      for (const TriangleId t : within_rings(mesh, center, RestCrossings::kRings)) near_.emplace_back(t, i);
+  }
+  sort_unique(near_);
+}
+
+double RestDepths::most_near(const CrossingCurves& all, const Overlap& overlap) const {
+  const auto of = [&](TriangleId triangle) {
+    return std::ranges::equal_range(near_, triangle, {}, [](const auto& entry) { return entry.first; });
+  };
+  double most = 0;
+  for_each_segment(all, overlap, [&](const auto& segment) {
+    const auto others = of(segment[1]);
+    for (const auto& [triangle, number] : of(segment[0]))
+      if (depth_[number] > most && std::ranges::binary_search(others, std::pair(segment[1], number)))
+        most = depth_[number];
+  });
+  return most;
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,172 @@
+// What lies on or in each other in the pose at rest, and what becomes of it: a box over a box.
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "bench/testing/test_queries.h"
+
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+class AtRest : public QueryProgram {
+ protected:
+  static bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
+  // A box of half the width over the unit cube, whose upper side is at 1; its lower side is at `bottom`.
+  static std::string boxes(double bottom, double inset = 0.25) {
+    std::string obj;
+    for (const bool upper : {false, true})
+      for (const double z : {0.0, 1.0})
+        for (const double y : {0.0, 1.0})
+          for (const double x : {0.0, 1.0}) {
+            const double low = upper ? inset : 0, width = upper ? 1 - 2 * inset : 1;
+            obj += "v " + std::to_string(low + width * x) + " " + std::to_string(low + width * y) + " " +
+                   std::to_string(upper ? bottom + 0.5 * z : z) + "\n";
+          }
+    constexpr int kFaces[][3] = {{1, 3, 4}, {1, 4, 2}, {5, 6, 8}, {5, 8, 7}, {1, 2, 6}, {1, 6, 5},
+                                 {3, 7, 8}, {3, 8, 4}, {1, 5, 7}, {1, 7, 3}, {2, 4, 8}, {2, 8, 6}};
+    for (const int first : {0, 8})
+      for (const auto& face : kFaces) {
+        obj += "f";
+        for (const int corner : face) obj += " " + std::to_string(first + corner);
+        obj += "\n";
+      }
+    return obj;
+  }
+  // Frame by frame, the lower side of the upper box is that high.
+  void put_frames(const std::vector<double>& bottoms, double inset = 0.25) const {
+    for (std::size_t i = 0; i < 10; ++i) fs::remove(folder / ("f." + std::to_string(i) + ".obj"));
+    for (std::size_t i = 0; i < bottoms.size(); ++i)
+      put("f." + std::to_string(i) + ".obj", boxes(bottoms[i], inset));
+  }
+  static std::string sentence(const json& document) { return document["summary"]["sentence"]; }
+  int status(const std::string& words) const { return run("cscd query f.0.obj " + words).status; }
+};
+
+// Mutations: what touches at rest is left out for good; what has parted goes on being left out.
+TEST_F(AtRest, WhatLiesOnEachOtherIsAnAnswer) {
+  for (const double inset : {0.25, 0.0}) {  // boxes of equal width have walls in one plane
+    SCOPED_TRACE(inset);
+    put_frames({1, 1.5, 1.25, 0.75, 0.751}, inset);
+    const json lifted = answer("f.0.obj");
+    EXPECT_FALSE(has(sentence(lifted), "does not touch")) << sentence(lifted);
+    EXPECT_EQ(lifted["intervals"][1]["verdict"], "clear");
+    EXPECT_EQ(lifted["intervals"][2]["verdict"], "touches");
+    EXPECT_EQ(lifted["intervals"][2]["time"], 0.5);
+    EXPECT_EQ(lifted["intervals"][3]["verdict"], "intersects_at_start");
+    EXPECT_EQ(lifted["rest_crossings"]["pairs"], 0);
+    EXPECT_GT(lifted["rest_crossings"]["touching"], 0);
+    EXPECT_EQ(status("--fail-on-contact"), 3);
+    put_frames({1, 0.9, 0.75}, inset);  // pressed in at once
+    EXPECT_EQ(answer("f.0.obj")["intervals"][1]["verdict"], "intersects_at_start");
+  }
+  put_frames({1, 1.5, 1.25, 0.75, 0.751});
+  const json events = answer("f.0.obj")["summary"]["events"];
+  ASSERT_FALSE(events.empty());
+  EXPECT_NEAR(events.back()["depth"]["at_least"].get<double>(), 0.25, 1e-12) << events;
+}
+
+TEST_F(AtRest, WhatPartsAndComesBackIsAnAnswer) {
+  put_frames({0.9, 0.95, 1.2, 0.9, 0.9});
+  const json found = answer("f.0.obj");
+  EXPECT_GT(found["rest_crossings"]["pairs"], 0);
+  const char* const kVerdicts[] = {"clear", "clear", "touches", "intersects_at_start"};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(found["intervals"][i]["verdict"], kVerdicts[i]) << i;
+  EXPECT_NEAR(found["summary"]["first"]["frame"].get<double>(), 2 + 2.0 / 3, 1e-9);
+  EXPECT_EQ(found["intervals"][3]["left_out"]["start_pairs"], 0);
+  EXPECT_EQ(status("--fail-on-contact"), 3);
+}
+
+// Mutations: depths are not compared; what is as deep as at rest counts.
+TEST_F(AtRest, WhatLiesDeeperThanAtRestIsAnAnswer) {
+  put_frames({0.9, 0.9, 0.95, 0.9});
+  const json same = answer("f.0.obj");
+  EXPECT_EQ(same["summary"]["verdict"], "clear");
+  EXPECT_EQ(sentence(same), "f.0.obj touches itself in frames 0 to 3 only in what crosses at rest.");
+  EXPECT_EQ(status("--fail-on-contact"), 0);
+  EXPECT_TRUE(same["summary"]["events"].empty());
+  put_frames({0.9, 0.85, 0.6, 0.95});
+  const json pressed = answer("f.0.obj");
+  EXPECT_EQ(
+      sentence(pressed),
+      "f.0.obj touches itself in frames 0 to 3 only in what crosses at rest, which comes to lie deeper than "
+      "there.");
+  ASSERT_EQ(pressed["summary"]["events"].size(), 1u);
+  const json& event = pressed["summary"]["events"][0];
+  EXPECT_NEAR(event["depth"]["at_least"].get<double>(), 0.4, 1e-9);
+  EXPECT_EQ(event["deepest"]["frame"], 2);
+  EXPECT_NEAR(event["at_rest"].get<double>(), 0.1, 1e-9);
+  EXPECT_EQ(status("--fail-deeper-than 0.3"), 3);
+  EXPECT_EQ(status("--fail-deeper-than 0.5"), 0);
+  EXPECT_TRUE(has(run("cscd query f.0.obj").out, ", deeper than at rest (0.1)"));
+}
+
+// Mutation: what starts no interval is not looked at.
+TEST_F(AtRest, TheLastPoseIsLookedAt) {
+  put_frames({1.5, 1.25, 0.75});
+  const json found = answer("f.0.obj");
+  EXPECT_GT(found["last_pose"]["pairs_total"], 0);
+  EXPECT_EQ(found["last_pose"]["pairs"].size(), found["last_pose"]["pairs_total"]);
+  EXPECT_EQ(found["last_pose"]["frame"], 2);
+  ASSERT_EQ(found["summary"]["events"].size(), 1u);
+  const json& event = found["summary"]["events"][0];
+  EXPECT_EQ(event["deepest"]["frame"], 2);
+  EXPECT_EQ(event["deepest"]["interval"], 1);
+  EXPECT_EQ(event["deepest"]["time"], 1);
+  EXPECT_EQ(status("--fail-deeper-than 0.2"), 3);
+  EXPECT_EQ(status("--fail-deeper-than 0.3"), 0);
+  const json part = answer("f.0.obj --frames 0:1");
+  EXPECT_EQ(part["last_pose"]["frame"], 1);
+  EXPECT_EQ(part["last_pose"]["pairs_total"], 0);
+}
+
+// Mutation: the one pose is taken for the pose at rest, whose crossings are left out.
+TEST_F(AtRest, OnePoseIsAnsweredByItself) {
+  put("lone.obj", boxes(0.75));
+  put("lone.7.obj", boxes(1.1));
+  const json crossed = answer("lone.obj"), free = answer("lone.7.obj");
+  EXPECT_EQ(crossed["one_pose"], true);
+  EXPECT_EQ(crossed["intervals"].size(), 1u);
+  EXPECT_EQ(crossed["last_pose"], nullptr);
+  EXPECT_EQ(crossed["summary"]["verdict"], "intersects_at_start");
+  EXPECT_TRUE(has(sentence(crossed), "lone.obj crosses itself in its one pose: ")) << sentence(crossed);
+  EXPECT_NEAR(crossed["summary"]["events"][0]["depth"]["at_least"].get<double>(), 0.25, 1e-12);
+  EXPECT_EQ(sentence(free), "lone.7.obj does not touch itself in its one pose.");
+  EXPECT_EQ(run("cscd query lone.obj --fail-deeper-than 0.2").status, 3);
+  EXPECT_EQ(run("cscd query lone.obj --fail-deeper-than 0.3").status, 0);
+  EXPECT_EQ(run("cscd query lone.7.obj --fail-on-contact").status, 0);
+  EXPECT_EQ(answer("lone.7.obj --thickness 0.2")["summary"]["verdict"], "close");
+  EXPECT_EQ(run("cscd inspect lone.obj").status, 0);
+  expect_refused(run("cscd export lone.obj out.ply"), "is one pose, and nothing moves");
+
+  scenes::Character still = scenes::walking_figure();
+  still.animations.clear();
+  put("still.glb", scenes::to_glb(still));
+  const json figure = answer("still.glb");
+  EXPECT_EQ(figure["one_pose"], true);
+  EXPECT_EQ(figure["summary"]["verdict"], "intersects_at_start") << "its eyes lie in its head";
+  EXPECT_TRUE(answer("figure.glb --clip walk")["summary"]["verdict"] == "clear");
+}
+
+// Two faces with the same corners share all that they have.
+TEST_F(AtRest, IdenticalTrianglesAreSaid) {
+  const std::string twice = "f 1 3 4\nf 4 1 3\nf 1 4 3\n";
+  put_frames({1.5, 1.25});
+  for (const char* file : {"f.0.obj", "f.1.obj"}) put(file, text(file) + twice);
+  const json found = answer("f.0.obj");
+  EXPECT_EQ(found["identical_triangles"], 3) << "of four in one place";
+  EXPECT_EQ(found["summary"]["verdict"], "clear");
+  for (const char* command : {"query", "inspect"})
+    EXPECT_TRUE(has(run("cscd " + std::string(command) + " f.0.obj").out,
+                    "3 triangles have the same three corners as another one: two such are never held"))
+        << command;
+  put_frames({1.5, 1.25});
+  EXPECT_EQ(answer("f.0.obj")["identical_triangles"], 0);
+  EXPECT_FALSE(has(run("cscd query f.0.obj").out, "same three corners"));
+}
+
+}  // namespace
+}  // namespace cscd::bench
