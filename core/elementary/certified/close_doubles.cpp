@@ -10,8 +10,8 @@
 // polynomial falls to zero, if it does. Newton's method finds that time, and one value in pairs of doubles
 // makes the largest double not above it certain, as in contact_time.h.
 //
-// Where several pairs of features are nearest together, gaps and distances of points tell neighbouring times
-// apart in pairs of doubles (fall_along).
+// Where several pairs of features are nearest together, or the distance begins at r up to rounding, gaps and
+// distances of points tell neighbouring times apart in pairs of doubles (fall_along).
 //
 // All numbers know how far they are off (approximate.h), and what they leave open is `unclear`.
 #include "core/elementary/certified/close_doubles.h"
@@ -40,6 +40,7 @@ struct Kind;
 template <>
 struct Kind<MovingVertexFace> {
   static constexpr std::size_t split = 1;  // so many of the points belong to the first feature
+  static constexpr int cases = exact::kVertexFaceCases;
   static std::array<MovingPoint, 4> points(const MovingVertexFace& q) {
     return {q.vertex, q.corner[0], q.corner[1], q.corner[2]};
   }
@@ -53,6 +54,7 @@ struct Kind<MovingVertexFace> {
 template <>
 struct Kind<MovingEdgeEdge> {
   static constexpr std::size_t split = 2;
+  static constexpr int cases = exact::kEdgeEdgeCases;
   static std::array<MovingPoint, 4> points(const MovingEdgeEdge& q) {
     return {q.first[0], q.first[1], q.second[0], q.second[1]};
   }
@@ -91,33 +93,51 @@ class Closeness {
     }
   }
 
-  CloseResult decide() {
+  CloseResult decide(bool apart_at_start) {
     double low = 0, tried = 0x1p-3;
     for (int step = 0; step < kMostSteps; ++step) {
       const std::array<Vec3, 4> now = at(low);
       const Nearest nearest = Kind<Query>::nearest(now);
-      if (low == 0) {
+      if (low == 0 && !apart_at_start) {
         const DistanceBounds distance = distance_bounds(now, Kind<Query>::split, nearest.way);
         if (distance.high <= r_) return {CloseResult::close, 0};
-        // In this range no product underflows or overflows so far that it matters.
-        const bool in_range = largest_ > 0x1p-64 && largest_ < 0x1p64 && r_ > 0x1p-128 && r_ < 0x1p64;
-        if (distance.low <= r_ || !in_range) return {CloseResult::unclear};
+        if (distance.low <= r_) return {CloseResult::unclear_start, 0, nearest.number};
       }
-      const double gain = advance(now, nearest.way) * (1 - low);
+      if (!in_range()) return {CloseResult::unclear, 0, nearest.number};
+      double gain = advance(now, nearest.way) * (1 - low);
       if (low + gain >= 1) return {CloseResult::apart};
       if (gain < tried) {
         const CloseResult closed_in = close_in(low, nearest);
         if (closed_in.kind != CloseResult::unclear) return closed_in;
-        if (gain < 0x1p-40) return fall_along(low, nearest);
+        if (gain < 0x1p-40) {
+          const CloseResult fallen = fall_along(low, nearest);
+          if (fallen.kind != CloseResult::unclear || !(fallen.time - low > 0x1p-40)) return fallen;
+          gain = fallen.time - low;
+        }
         tried = gain / 4;
       }
       low += gain;
     }
-    return {CloseResult::unclear};
+    return {CloseResult::unclear, low};
+  }
+
+  unsigned possible_cases(double from) const {
+    unsigned possible = (1U << Kind<Query>::cases) - 1;
+    if (!in_range()) return possible;
+    for (int i = 0; i < Kind<Query>::cases; ++i) {
+      const CloseCase<Moving> which = case_at(i, 0.5 * (1 + from), 0.5 * (1 - from) + 0x1p-52);
+      bool excluded = which.beyond.value.sign() > 0;
+      for (std::size_t k = 0; k < which.insides; ++k) excluded |= which.inside[k].value.sign() < 0;
+      if (excluded) possible &= ~(1U << i);
+    }
+    return possible;
   }
 
  private:
   static constexpr int kMostSteps = 200;
+
+  // In this range no product underflows or overflows so far that it matters.
+  bool in_range() const { return largest_ > 0x1p-64 && largest_ < 0x1p64 && r_ > 0x1p-128 && r_ < 0x1p64; }
 
   std::array<Vec3, 4> at(double t) const {
     std::array<Vec3, 4> now;
@@ -238,23 +258,14 @@ class Closeness {
                                       : CloseResult{CloseResult::unclear};
   }
 
-  // The case in which several pairs of features are nearest together, as in edges that stay parallel. From
-  // `low` on, at which the features are nearly close, the gap along the direction of their nearest points
-  // proves them apart, and the distance of two of their points proves them close. Both differ from the
-  // distance by the square of what the direction and the points are off, so pairs of doubles tell
-  // neighbouring times apart.
+  // The case in which several pairs of features are nearest together, as in edges that stay parallel, or in
+  // which the distance begins at r up to rounding. From `low` on, at which the features are nearly close, the
+  // gap along the direction of their nearest points proves them apart, and the distance of two of their
+  // points proves them close. Both differ from the distance by the square of what the direction and the
+  // points are off, so pairs of doubles tell neighbouring times apart. An unclear result has the time up to
+  // which the features are apart.
   CloseResult fall_along(double low, const Nearest& nearest) const {
-    if (nearest.number == 0) return {CloseResult::unclear};
-    PointOf<Pairs> direction = way_at(low, nearest.number);
-    const auto [p, a, b] = vertex_and_edge<Query>(nearest.number);
-    if (a != b) {  // at a right angle to the edge in pairs of doubles, too
-      const std::array<PointOf<Pairs>, 4> now = pairs_at(low);
-      const PointOf<Pairs> edge = now[b] - now[a];
-      const double off = dot(direction, edge).value.high / dot(edge, edge).value.high;
-      for (std::size_t k = 0; k < 3; ++k) direction[k] = direction[k] - Pairs{{off, 0}, 0} * edge[k];
-    }
-    // It may be any direction, and leads to the first feature.
-    for (Pairs& x : direction) x = {p < Kind<Query>::split ? x.value : -x.value, 0};
+    const PointOf<Pairs> direction = direction_at(low, nearest);
     const Vec3 way(direction[0].value.high, direction[1].value.high, direction[2].value.high);
     // The length of the direction, and r times that: one step of Newton's method from the rounded root.
     const Pair square = dot(direction, direction).value;
@@ -279,28 +290,75 @@ class Closeness {
         }
       return certain;
     };
-    if (!apart_at(low)) return {CloseResult::unclear};
+    if (!apart_at(low)) return {CloseResult::unclear, low};
     const double time = std::min(first, 1.0);
-    if (!(time > low) || !apart_at(time)) return {CloseResult::unclear};
+    if (!(time > low)) return {CloseResult::unclear, low};
+    if (!apart_at(time)) {
+      const double before = low + (1 - 0x1p-30) * (time - low);
+      return {CloseResult::unclear, apart_at(before) ? before : low};
+    }
     if (time == 1) return {CloseResult::apart};
     const PointOf<Pairs> last = way_at(std::nextafter(time, 2), nearest.number);
     const Pairs r{{r_, 0}, 0};
     const bool certain = (dot(last, last) - r * r).sign() < 0;
-    return certain ? CloseResult{CloseResult::close, time} : CloseResult{CloseResult::unclear};
+    return {certain ? CloseResult::close : CloseResult::unclear, time};
   }
 
-  // The way from a point of the edge of the case to its vertex, or from the one vertex to the other. The
-  // point is the nearest up to rounding.
-  PointOf<Pairs> way_at(double t, int number) const {
-    const auto [p, a, b] = vertex_and_edge<Query>(number);
+  // A direction that leads to the first feature and is that of the nearest points in pairs of doubles. It
+  // counts as exact, as any direction would be right.
+  PointOf<Pairs> direction_at(double t, const Nearest& nearest) const {
     const std::array<PointOf<Pairs>, 4> now = pairs_at(t);
-    PointOf<Pairs> way = now[p] - now[a];
-    if (a == b) return way;
+    PointOf<Pairs> direction;
+    bool to_first = true;
+    if (nearest.number == 0) {
+      direction = exact::cross(now[1] - now[Kind<Query>::split == 1 ? 3 : 0], now[3] - now[2]);
+      double along = 0;
+      for (std::size_t k = 0; k < 3; ++k)
+        along += direction[k].value.high * nearest.way[static_cast<Eigen::Index>(k)];
+      to_first = along > 0;
+    } else {
+      direction = way_at(t, nearest.number);
+      const auto [p, a, b] = vertex_and_edge<Query>(nearest.number);
+      to_first = p < Kind<Query>::split;
+      if (a != b) {  // at a right angle to the edge in pairs of doubles, too
+        const PointOf<Pairs> edge = now[b] - now[a];
+        const double off = dot(direction, edge).value.high / dot(edge, edge).value.high;
+        for (std::size_t k = 0; k < 3; ++k) direction[k] = direction[k] - Pairs{{off, 0}, 0} * edge[k];
+      }
+    }
+    for (Pairs& x : direction) x = {to_first ? x.value : -x.value, 0};
+    return direction;
+  }
+
+  // The way between a point of one feature and a point of the other, up to its sign. They are the nearest
+  // points of the case up to rounding.
+  PointOf<Pairs> way_at(double t, int number) const {
+    const std::array<PointOf<Pairs>, 4> now = pairs_at(t);
     const std::array<Vec3, 4> rounded = at(t);
+    const auto moved = [&](PointOf<Pairs> x, double share, std::size_t from, std::size_t to) {
+      for (std::size_t k = 0; k < 3; ++k) x[k] = x[k] + Pairs{{share, 0}, 0} * (now[to][k] - now[from][k]);
+      return x;
+    };
+    if (number == 0) {
+      const bool vertex = Kind<Query>::split == 1;
+      const Vec3 u = rounded[1] - rounded[vertex ? 3 : 0], w = rounded[3] - rounded[2], n = u.cross(w);
+      const double area = n.squaredNorm();
+      if (vertex) {  // from the second corner, along the edges to the first and to the third
+        const Vec3 up = rounded[0] - rounded[2], first = rounded[1] - rounded[2];
+        const double s = std::clamp(n.dot(up.cross(w)) / area, 0.0, 1.0),
+                     q = std::clamp(n.dot(first.cross(up)) / area, 0.0, (1 - s) * (1 - 2 * kUnitRoundoff));
+        return now[0] - moved(moved(now[2], s, 2, 1), q, 2, 3);
+      }
+      const Vec3 across = rounded[2] - rounded[0];
+      const double s = std::clamp(n.dot(across.cross(w)) / area, 0.0, 1.0),
+                   q = std::clamp(n.dot(across.cross(u)) / area, 0.0, 1.0);
+      return moved(now[0], s, 0, 1) - moved(now[2], q, 2, 3);
+    }
+    const auto [p, a, b] = vertex_and_edge<Query>(number);
+    if (a == b) return now[p] - now[a];
     const Vec3 edge = rounded[b] - rounded[a];
     const double s = std::clamp((rounded[p] - rounded[a]).dot(edge) / edge.squaredNorm(), 0.0, 1.0);
-    for (std::size_t k = 0; k < 3; ++k) way[k] = way[k] - Pairs{{s, 0}, 0} * (now[b][k] - now[a][k]);
-    return way;
+    return now[p] - moved(now[a], s, a, b);
   }
 
   const std::array<MovingPoint, 4> points_;
@@ -311,11 +369,17 @@ class Closeness {
 
 }  // namespace
 
-CloseResult close_in_doubles(const MovingVertexFace& query, double r) {
-  return Closeness<MovingVertexFace>(query, r).decide();
+CloseResult close_in_doubles(const MovingVertexFace& query, double r, bool apart_at_start) {
+  return Closeness<MovingVertexFace>(query, r).decide(apart_at_start);
 }
-CloseResult close_in_doubles(const MovingEdgeEdge& query, double r) {
-  return Closeness<MovingEdgeEdge>(query, r).decide();
+CloseResult close_in_doubles(const MovingEdgeEdge& query, double r, bool apart_at_start) {
+  return Closeness<MovingEdgeEdge>(query, r).decide(apart_at_start);
+}
+unsigned possible_cases(const MovingVertexFace& query, double r, double from) {
+  return Closeness<MovingVertexFace>(query, r).possible_cases(from);
+}
+unsigned possible_cases(const MovingEdgeEdge& query, double r, double from) {
+  return Closeness<MovingEdgeEdge>(query, r).possible_cases(from);
 }
 
 }  // namespace cscd

@@ -6,11 +6,21 @@
 namespace cscd {
 
 struct CloseResult {
-  enum Kind { apart, close, unclear } kind;
-  double time = 0;  // of `close`: the largest double not above the earliest time
+  // `unclear_start` leaves open whether the features are close at t = 0.
+  enum Kind { apart, close, unclear, unclear_start } kind;
+  // Of `close`, the largest double not above the earliest time; of `unclear`, a time before which the
+  // features are not close, if they are not close at t = 0.
+  double time = 0;
+  int likely_case = 0;  // by which the features are probably nearest at t = 0 (exact/closeness_cases.h)
 };
 
-CloseResult close_in_doubles(const MovingVertexFace& query, double r);
-CloseResult close_in_doubles(const MovingEdgeEdge& query, double r);
+// With `apart_at_start`, the features are known to be farther than r apart at t = 0.
+CloseResult close_in_doubles(const MovingVertexFace& query, double r, bool apart_at_start = false);
+CloseResult close_in_doubles(const MovingEdgeEdge& query, double r, bool apart_at_start = false);
+
+// The cases of nearest features that may decide at some t in [from, 1] that the features are close, as bits
+// by their numbers. All others certainly do not.
+unsigned possible_cases(const MovingVertexFace& query, double r, double from);
+unsigned possible_cases(const MovingEdgeEdge& query, double r, double from);
 
 }  // namespace cscd

@@ -123,7 +123,9 @@ TEST(FilteredExactClose, AnswersAsTheRefereeOnALattice) {
     ASSERT_NO_FATAL_FAILURE(family.add_both(make.lattice(1 + i % 3), 0.5 * (1 + make.below(6))));
   EXPECT_GT(family.apart, 200);
   EXPECT_GT(family.close, 1000);
-  EXPECT_GT(family.by_referee(), 500);
+  // Integers settle what doubles leave open, but for some that graze the distance.
+  EXPECT_GT(family.stages[ExactStage::integers], 500);
+  EXPECT_LT(family.by_referee(), 0.01 * family.all());
 }
 
 // Edges that stay parallel, and vertices that come straight down on an edge of a face's border: several pairs

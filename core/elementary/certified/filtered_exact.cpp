@@ -5,7 +5,7 @@
 //             (the row `exact` of the catalogue has the same filter);
 //   doubles   uses certain signs in double precision (doubles_stage.h), and pairs of doubles for the time
 //             of a contact (contact_time.h);
-//   integers  uses exact integers of fixed capacity (integer_contact.h);
+//   integers  uses exact integers of fixed capacity (integer_contact.h, and at a distance close_integers.h);
 //   referee   answers queries that the integer stage gives up on (exact.h).
 // Only the last stage allocates.
 #include "core/elementary/certified/filtered_exact.h"
@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include "core/elementary/certified/close_doubles.h"
+#include "core/elementary/certified/close_integers.h"
 #include "core/elementary/certified/contact_time.h"
 #include "core/elementary/certified/doubles_stage.h"
 #include "core/elementary/certified/exact_lanes.h"
@@ -169,15 +170,49 @@ class LaneStages {
   Waiting<Query> once_, several_, met_;
 };
 
-// At a distance there is no stage of integers of fixed capacity.
+template <class Query>
+bool rests(const Query& query) {
+  bool rests = true;
+  for_each_point(query, [&](const MovingPoint& p) { rests = rests && p.start == p.end; });
+  return rests;
+}
+
+template <class Query>
+Decision close_by_referee(const Query& query, double r) {
+  const auto time = exact::first_closeness(query, r);
+  return {time ? Answer{Verdict::contact, time->lo} : kApart, ExactStage::referee};
+}
+bool is_decided(const CloseResult& found) {
+  return found.kind == CloseResult::apart || found.kind == CloseResult::close;
+}
+Decision close_of(const CloseResult& found, ExactStage stage) {
+  return {found.kind == CloseResult::close ? Answer{Verdict::contact, found.time} : kApart, stage};
+}
+
+// Doubles leave open whether features are close at the start if their distance is r, or r up to rounding, as
+// that of many pairs of a regular grid. Once integers have told, doubles decide most motions.
+template <class Query>
+Decision close_by_integers(const Query& query, double r, const CloseResult& found) {
+  CloseResult later = found;
+  if (found.time == 0) {
+    const integer::Outcome start = integer::closeness_at_start(query, r, found.likely_case);
+    if (start == integer::Outcome::gave_up) return close_by_referee(query, r);
+    if (start == integer::Outcome::contact) return {{Verdict::contact, 0}, ExactStage::integers};
+    if (rests(query)) return {kApart, ExactStage::integers};
+    if (found.kind == CloseResult::unclear_start) later = close_in_doubles(query, r, true);
+    if (is_decided(later)) return close_of(later, ExactStage::integers);
+  }
+  const integer::Result result = integer::first_closeness(query, r, possible_cases(query, r, later.time));
+  if (result.outcome == integer::Outcome::gave_up) return close_by_referee(query, r);
+  const bool close = result.outcome == integer::Outcome::contact;
+  return {close ? Answer{Verdict::contact, result.time} : kApart, ExactStage::integers};
+}
+
 template <class Query>
 Decision decide_close(const Query& query, double r) {
   if (relative_boxes_apart(query, r)) return {kApart, ExactStage::filter};
   const CloseResult found = close_in_doubles(query, r);
-  if (found.kind == CloseResult::apart) return {kApart, ExactStage::doubles};
-  if (found.kind == CloseResult::close) return {{Verdict::contact, found.time}, ExactStage::doubles};
-  const auto time = exact::first_closeness(query, r);
-  return {time ? Answer{Verdict::contact, time->lo} : kApart, ExactStage::referee};
+  return is_decided(found) ? close_of(found, ExactStage::doubles) : close_by_integers(query, r, found);
 }
 template <class Query>
 void decide_all_close(std::span<const Query> queries, std::span<const double> distances,

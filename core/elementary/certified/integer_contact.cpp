@@ -31,6 +31,7 @@
 #include <utility>
 
 #include "core/elementary/certified/integer_roots.h"
+#include "core/elementary/certified/scaled.h"
 
 namespace cscd::integer {
 namespace {
@@ -55,19 +56,6 @@ Polynomial polynomial(const Line& line) {
   return p;
 }
 
-// The double mantissa * 2^exponent.
-struct Scaled {
-  std::int64_t mantissa = 0;  // odd, or zero
-  int exponent = 0;
-};
-Scaled scaled(double x) {
-  if (x == 0) return {};
-  int exponent = 0;
-  const auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53));
-  const int spare = std::countr_zero(static_cast<std::uint64_t>(mantissa));
-  return {mantissa >> spare, exponent - 53 + spare};  // exact: the low bits are zero
-}
-
 // The vectors p, q, r in integers: [axis].
 struct FeatureTriple {
   Line p[3], q[3], r[3];
@@ -80,20 +68,14 @@ FeatureTriple triple(Kind kind, const MovingPoint* const (&points)[4]) {
   FeatureTriple result;
   for (int axis = 0; axis < 3; ++axis) {
     Scaled part[8];
-    int lowest = 1 << 20, highest = -(1 << 20);
-    for (int i = 0; i < 8; ++i) {
-      part[i] = scaled((i < 4 ? points[i]->start : points[i - 4]->end)[axis]);
-      if (part[i].mantissa == 0) continue;
-      lowest = std::min(lowest, part[i].exponent);
-      const auto magnitude =
-          static_cast<std::uint64_t>(part[i].mantissa < 0 ? -part[i].mantissa : part[i].mantissa);
-      highest = std::max(highest, part[i].exponent + static_cast<int>(std::bit_width(magnitude)));
-    }
+    BitSpan span;
+    for (int i = 0; i < 8; ++i)
+      span.add(part[i] = scaled((i < 4 ? points[i]->start : points[i - 4]->end)[axis]));
     // A difference of differences has two bits more.
-    result.bits[axis] = std::max(0, highest - lowest) + 2;
+    result.bits[axis] = span.bits() + 2;
     if (result.bits[axis] > Wide::kBits / 8) continue;  // `Contact` gives up on so many bits
     const auto at = [&](int i) {
-      return part[i].mantissa == 0 ? Wide() : Wide(part[i].mantissa) << part[i].exponent - lowest;
+      return part[i].mantissa == 0 ? Wide() : Wide(part[i].mantissa) << part[i].exponent - span.lowest();
     };
     Line line[4];
     for (int i = 0; i < 4; ++i) {

@@ -5,27 +5,28 @@
 #include <cmath>
 #include <cstdint>
 
-// Integers of up to 18,432 bits that hold their words in place: nothing is allocated, and products are
-// computed by the schoolbook method.
+// Integers of up to 64 `most_words` bits that hold their words in place: nothing is allocated, and products
+// are computed by the schoolbook method.
 //
 // They serve the integers of one elementary query, which have one to forty words, and up to 280 where some
 // coordinates are subnormal. At these sizes they are faster than GMP, whose numbers each own a block of
 // memory. Words that are not in use are not touched. The caller makes sure beforehand that every result has
-// at most Wide::kBits bits.
+// at most kBits bits.
 namespace cscd {
 
-class Wide {
+template <int most_words>
+class WideOf {
  public:
-  static constexpr int kWords = 288;
+  static constexpr int kWords = most_words;
   static constexpr int kBits = 64 * kWords;
 
   // Words beyond the size are never read, and clearing them would cost more than most sums.
-  Wide() {}
-  Wide(std::int64_t value) : size_(value != 0), negative_(value < 0) {
+  WideOf() {}
+  WideOf(std::int64_t value) : size_(value != 0), negative_(value < 0) {
     word_[0] = negative_ ? 0 - static_cast<std::uint64_t>(value) : static_cast<std::uint64_t>(value);
   }
-  Wide(const Wide& other) : size_(other.size_), negative_(other.negative_) { copy_words(other); }
-  Wide& operator=(const Wide& other) {
+  WideOf(const WideOf& other) : size_(other.size_), negative_(other.negative_) { copy_words(other); }
+  WideOf& operator=(const WideOf& other) {
     size_ = other.size_;
     negative_ = other.negative_;
     copy_words(other);
@@ -36,17 +37,17 @@ class Wide {
   // The number of bits of the magnitude; 0 for zero.
   int bits() const { return size_ == 0 ? 0 : 64 * size_ - std::countl_zero(word_[size_ - 1]); }
 
-  Wide operator-() const {
-    Wide result = *this;
+  WideOf operator-() const {
+    WideOf result = *this;
     result.negative_ = !negative_;
     return result;
   }
-  friend Wide operator+(const Wide& a, const Wide& b) { return sum(a, b, b.negative_); }
-  friend Wide operator-(const Wide& a, const Wide& b) { return sum(a, b, !b.negative_); }
-  friend Wide operator*(const Wide& a, const Wide& b) {
-    Wide result;
+  friend WideOf operator+(const WideOf& a, const WideOf& b) { return sum(a, b, b.negative_); }
+  friend WideOf operator-(const WideOf& a, const WideOf& b) { return sum(a, b, !b.negative_); }
+  friend WideOf operator*(const WideOf& a, const WideOf& b) {
+    WideOf result;
     if (a.size_ == 0 || b.size_ == 0) return result;
-    const Wide &longer = a.size_ < b.size_ ? b : a, &shorter = a.size_ < b.size_ ? a : b;
+    const WideOf &longer = a.size_ < b.size_ ? b : a, &shorter = a.size_ < b.size_ ? a : b;
     assert(a.bits() + b.bits() <= kBits);
     result.negative_ = a.negative_ != b.negative_;
     result.word_[longer.size_] = multiply_word(longer, shorter.word_[0], result.word_);
@@ -58,12 +59,12 @@ class Wide {
     result.size_ -= result.word_[result.size_ - 1] == 0;
     return result;
   }
-  friend Wide operator<<(const Wide& a, int places) {
+  friend WideOf operator<<(const WideOf& a, int places) {
     assert(places >= 0);
     if (places == 0 || a.size_ == 0) return a;
     const int words = places / 64, rest = places % 64;
     assert(a.bits() + places <= kBits);
-    Wide result;
+    WideOf result;
     result.negative_ = a.negative_;
     for (int i = 0; i < words; ++i) result.word_[i] = 0;
     if (rest == 0) {
@@ -99,11 +100,11 @@ class Wide {
  private:
   __extension__ typedef unsigned __int128 TwoWords;
 
-  void copy_words(const Wide& other) {
+  void copy_words(const WideOf& other) {
     for (int i = 0; i < other.size_; ++i) word_[i] = other.word_[i];
   }
   // Writes the magnitude of a times `factor` to `out`, a.size_ words long. Returns the word that is carried.
-  static std::uint64_t multiply_word(const Wide& a, std::uint64_t factor, std::uint64_t* out) {
+  static std::uint64_t multiply_word(const WideOf& a, std::uint64_t factor, std::uint64_t* out) {
     std::uint64_t carry = 0;
     for (int i = 0; i < a.size_; ++i) {
       const TwoWords product = static_cast<TwoWords>(a.word_[i]) * factor + carry;
@@ -113,7 +114,7 @@ class Wide {
     return carry;
   }
   // Adds the magnitude of a times `factor` to `out`, a.size_ words long. Returns the word that is carried.
-  static std::uint64_t add_product_of_word(const Wide& a, std::uint64_t factor, std::uint64_t* out) {
+  static std::uint64_t add_product_of_word(const WideOf& a, std::uint64_t factor, std::uint64_t* out) {
     std::uint64_t carry = 0;
     for (int i = 0; i < a.size_; ++i) {
       const TwoWords product = static_cast<TwoWords>(a.word_[i]) * factor + carry + out[i];
@@ -122,17 +123,17 @@ class Wide {
     }
     return carry;
   }
-  static bool smaller_magnitude(const Wide& a, const Wide& b) {
+  static bool smaller_magnitude(const WideOf& a, const WideOf& b) {
     if (a.size_ != b.size_) return a.size_ < b.size_;
     for (int i = a.size_ - 1; i >= 0; --i)
       if (a.word_[i] != b.word_[i]) return a.word_[i] < b.word_[i];
     return false;
   }
   // a + b, with the sign of b given by `b_negative`.
-  static Wide sum(const Wide& a, const Wide& b, bool b_negative) {
+  static WideOf sum(const WideOf& a, const WideOf& b, bool b_negative) {
     const bool swap = smaller_magnitude(a, b);
-    const Wide &large = swap ? b : a, &small = swap ? a : b;
-    Wide result;
+    const WideOf &large = swap ? b : a, &small = swap ? a : b;
+    WideOf result;
     result.negative_ = swap ? b_negative : a.negative_;
     result.size_ = large.size_;
     if (a.negative_ == b_negative) {
@@ -163,5 +164,8 @@ class Wide {
   // The words of two factors can be one more than those of their product.
   std::uint64_t word_[kWords + 1];
 };
+
+// The integers of a contact.
+using Wide = WideOf<288>;
 
 }  // namespace cscd
