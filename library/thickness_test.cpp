@@ -116,6 +116,17 @@ TEST(Thickness, ReachesToObstacles) {
   }
 }
 
+// The exact sum 1 + 2^-53 is no double. Mutation: the sum is rounded to the nearest.
+TEST(Thickness, SumsOfAPairAreRoundedUp) {
+  Rows pose = kApart;
+  pose.topRows(3).col(2).setConstant(-0x1p-53);
+  pose.bottomRows(3).col(2).setConstant(1);
+  SelfCollision body(kTwoFaces, kApart, thick(1, {0x1p-53, 0x1p-53, 0x1p-53, 0, 0, 0}));
+  EXPECT_GT(body.all_contacts(pose, pose).close_at_start(), 0u);
+  pose.bottomRows(3).col(2).setConstant(1 + 0x1p-51);
+  EXPECT_TRUE(body.is_free(pose, pose));
+}
+
 // From less than the square of what a double holds to more than the mesh measures.
 TEST(Thickness, ExtremeLengthsAreAnswered) {
   Rows touching = after();

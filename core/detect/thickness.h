@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/base/ids.h"
+#include "core/base/sum_above.h"
 #include "core/detect/contact.h"
 #include "core/mesh/triangle_mesh.h"
 
@@ -12,6 +13,8 @@ namespace cscd {
 // How near two features may come before they count as *close*. A feature pair is close if its distance is at
 // most its thickness at some t in [0, 1]; with thickness 0, close means that the features touch. The
 // thickness of a pair is `all`, and the largest of `of_vertex` among the vertices of either feature on top.
+// Where a double does not hold this sum, the thickness is the sum rounded up, so that no pair within the
+// exact sum is missed.
 class Thickness {
  public:
   Thickness() = default;
@@ -21,7 +24,7 @@ class Thickness {
     largest_ = all;
     if (of_vertex.empty()) return;
     const auto [least, most] = std::ranges::minmax_element(of_vertex);
-    largest_ += 2 * std::max(0.0, *most);
+    largest_ = sum_above(all, std::max(0.0, *most), std::max(0.0, *most));
     is_uniform_ = *least == *most;
   }
 
@@ -34,8 +37,9 @@ class Thickness {
   double of(const TriangleMesh& mesh, const FeaturePair& pair) const {
     if (of_vertex_.empty()) return all_;
     if (pair.kind == FeaturePair::Kind::vertex_face)
-      return all_ + (of_vertex_[static_cast<std::size_t>(pair.a)] + at(mesh.corners(TriangleId{pair.b})));
-    return all_ + (at(mesh.ends(EdgeId{pair.a})) + at(mesh.ends(EdgeId{pair.b})));
+      return sum_above(all_, of_vertex_[static_cast<std::size_t>(pair.a)],
+                       at(mesh.corners(TriangleId{pair.b})));
+    return sum_above(all_, at(mesh.ends(EdgeId{pair.a})), at(mesh.ends(EdgeId{pair.b})));
   }
 
  private:
