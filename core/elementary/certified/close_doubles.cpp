@@ -121,6 +121,27 @@ class Closeness {
     return {CloseResult::unclear, low};
   }
 
+  // If the distance at t = 1 is exactly r, no two points are less than r apart along the exact direction of
+  // the nearest points then. Where all are farther apart along it at t = 0, the gaps, which are linear in
+  // time, exceed r until t = 1.
+  //
+  // The computed way is that of some two points of the features, up to 64 u M, where M is the largest
+  // coordinate. Along the exact direction such two points are at least r apart, so the cosine of the angle
+  // between the two is at least r / (r + e), where e is what the way is longer than r and 64 u M. The angle
+  // is below sqrt(2 e / r), and moves the gap of two points by less than that times 4 M.
+  EndOfMotion end_of_motion() const {
+    const Nearest nearest = Kind<Query>::nearest(end_);
+    if (!in_range()) return {nearest.number, false};
+    const double length = nearest.way.norm();
+    const double excess = std::max(0.0, length - r_) + 128 * kUnitRoundoff * (largest_ + r_);
+    const double least = length * (r_ + 4 * largest_ * std::sqrt(2.1 * excess / r_) + excess);
+    bool from_afar = length > 0;
+    for (std::size_t i = 0; i < Kind<Query>::split; ++i)
+      for (std::size_t j = Kind<Query>::split; j < 4; ++j)
+        from_afar = from_afar && (start_[i] - start_[j]).dot(nearest.way) > least;
+    return {nearest.number, from_afar};
+  }
+
   unsigned possible_cases(double from) const {
     unsigned possible = (1U << Kind<Query>::cases) - 1;
     if (!in_range()) return possible;
@@ -374,6 +395,12 @@ CloseResult close_in_doubles(const MovingVertexFace& query, double r, bool apart
 }
 CloseResult close_in_doubles(const MovingEdgeEdge& query, double r, bool apart_at_start) {
   return Closeness<MovingEdgeEdge>(query, r).decide(apart_at_start);
+}
+EndOfMotion end_of_motion(const MovingVertexFace& query, double r) {
+  return Closeness<MovingVertexFace>(query, r).end_of_motion();
+}
+EndOfMotion end_of_motion(const MovingEdgeEdge& query, double r) {
+  return Closeness<MovingEdgeEdge>(query, r).end_of_motion();
 }
 unsigned possible_cases(const MovingVertexFace& query, double r, double from) {
   return Closeness<MovingVertexFace>(query, r).possible_cases(from);

@@ -18,6 +18,15 @@ struct CloseResult {
 CloseResult close_in_doubles(const MovingVertexFace& query, double r, bool apart_at_start = false);
 CloseResult close_in_doubles(const MovingEdgeEdge& query, double r, bool apart_at_start = false);
 
+// How features come to their distance at t = 1.
+struct EndOfMotion {
+  int likely_case;  // by which they are probably nearest then
+  // If their distance then is exactly r, they are certainly farther apart at all times before.
+  bool from_afar;
+};
+EndOfMotion end_of_motion(const MovingVertexFace& query, double r);
+EndOfMotion end_of_motion(const MovingEdgeEdge& query, double r);
+
 // The cases of nearest features that may decide at some t in [from, 1] that the features are close, as bits
 // by their numbers. All others certainly do not.
 unsigned possible_cases(const MovingVertexFace& query, double r, double from);

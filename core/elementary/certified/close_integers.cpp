@@ -103,10 +103,10 @@ struct Scene {
     const Number length = integer(r);
     return length * length;
   }
-  std::array<PointOf<Number>, 4> at_start() const {
+  std::array<PointOf<Number>, 4> at(const Scaled (&places)[4][3]) const {
     std::array<PointOf<Number>, 4> points;
     for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t k = 0; k < 3; ++k) points[i][k] = integer(start[i][k]);
+      for (std::size_t k = 0; k < 3; ++k) points[i][k] = integer(places[i][k]);
     return points;
   }
   std::array<PointOf<TimePolynomial>, 4> in_motion() const {
@@ -152,7 +152,7 @@ bool is_nearest(const CloseCase<Number>& which) {
 template <class Cases>
 Outcome closeness_at_start(const Scene& scene, int likely) {
   if (!scene.fits()) return Outcome::gave_up;
-  const std::array<PointOf<Number>, 4> points = scene.at_start();
+  const std::array<PointOf<Number>, 4> points = scene.at(scene.start);
   const Number rr = scene.r_squared();
   const CloseCase<Number> first = Cases::at(likely, points, rr);
   if (is_nearest(first)) return first.beyond.sign() <= 0 ? Outcome::contact : Outcome::apart;
@@ -161,6 +161,13 @@ Outcome closeness_at_start(const Scene& scene, int likely) {
     if (which.beyond.sign() <= 0 && decides(which)) return Outcome::contact;
   }
   return Outcome::apart;
+}
+
+template <class Cases>
+bool at_distance_at_end(const Scene& scene, int likely) {
+  if (!scene.fits()) return false;
+  const CloseCase<Number> which = Cases::at(likely, scene.at(scene.end), scene.r_squared());
+  return which.beyond.sign() == 0 && is_nearest(which);
 }
 
 // The times from index / 2^halvings to (index + 1) / 2^halvings.
@@ -368,6 +375,12 @@ Outcome closeness_at_start(const MovingVertexFace& query, double r, int likely) 
 }
 Outcome closeness_at_start(const MovingEdgeEdge& query, double r, int likely) {
   return closeness_at_start<EdgeEdgeCases>(scene_of(query, r), likely);
+}
+bool at_distance_at_end(const MovingVertexFace& query, double r, int likely) {
+  return at_distance_at_end<VertexFaceCases>(scene_of(query, r), likely);
+}
+bool at_distance_at_end(const MovingEdgeEdge& query, double r, int likely) {
+  return at_distance_at_end<EdgeEdgeCases>(scene_of(query, r), likely);
 }
 Result first_closeness(const MovingVertexFace& query, double r, unsigned cases) {
   return first_closeness<VertexFaceCases>(scene_of(query, r), cases);

@@ -13,6 +13,11 @@ namespace cscd::integer {
 Outcome closeness_at_start(const MovingVertexFace& query, double r, int likely);
 Outcome closeness_at_start(const MovingEdgeEdge& query, double r, int likely);
 
+// Whether the features are exactly r apart at t = 1, as far as the likely case shows that: false says
+// nothing.
+bool at_distance_at_end(const MovingVertexFace& query, double r, int likely);
+bool at_distance_at_end(const MovingEdgeEdge& query, double r, int likely);
+
 // Decides whether features that are not close at t = 0 come to be close, and when first. Bit i of `cases`
 // says that the case i may decide this; all others are known not to.
 Result first_closeness(const MovingVertexFace& query, double r, unsigned cases);

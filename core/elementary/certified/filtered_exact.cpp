@@ -202,6 +202,9 @@ Decision close_by_integers(const Query& query, double r, const CloseResult& foun
     if (found.kind == CloseResult::unclear_start) later = close_in_doubles(query, r, true);
     if (is_decided(later)) return close_of(later, ExactStage::integers);
   }
+  const EndOfMotion end = end_of_motion(query, r);
+  if (end.from_afar && integer::at_distance_at_end(query, r, end.likely_case))
+    return {{Verdict::contact, 1}, ExactStage::integers};
   const integer::Result result = integer::first_closeness(query, r, possible_cases(query, r, later.time));
   if (result.outcome == integer::Outcome::gave_up) return close_by_referee(query, r);
   const bool close = result.outcome == integer::Outcome::contact;
