@@ -262,6 +262,9 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
   if (options.survey) report.component_bones.assign(report.components, 0);
   report.chosen_triangles = surface.triangles.size();
   report.notes = sequence->notes();
+  if (std::string loose = note_on_loose_vertices(sequence->vertex_count(), sequence->triangles());
+      !loose.empty())
+    report.notes.push_back(std::move(loose));
   write_source_map(surface.sources, sources);
 
   PointCacheWriter writer(cache, {surface.triangles, surface.vertex.size(), {}, false}, false);

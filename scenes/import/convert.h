@@ -18,9 +18,9 @@ ImportReport convert(const Character& character, const ImportOptions& options, c
 
 // Writes a moving surface without bones (scenes/exchange/mesh_sequence.h), or the one in a folder, to `cache`
 // as a point cache, its positions as they are, and its source map to `sources`, and returns the report.
-// Triangles that repeat a corner are left out, and so are vertices of no triangle. A survey writes the first
-// two frames. One pose is written twice where the options take one. Throws InputError where they do not, and
-// for options that only a file with clips or bones can follow.
+// Triangles that repeat a corner are left out, and so are vertices of no triangle, of which a note says how
+// many. A survey writes the first two frames. One pose is written twice where the options take one. Throws
+// InputError where they do not, and for options that only a file with clips or bones can follow.
 ImportReport import_sequence(const std::filesystem::path& model, const ImportOptions& options,
                              const CharacterLimits& limits, const std::filesystem::path& cache,
                              const std::filesystem::path& sources);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
@@ -12,6 +13,7 @@
 #include "scenes/character/pose.h"
 #include "scenes/character/test_characters.h"
 #include "scenes/clip/point_cache.h"
+#include "scenes/import/surface.h"
 
 namespace cscd::scenes {
 namespace {
@@ -415,6 +417,24 @@ TEST_F(Convert, RefusesSkeletonsWithoutSurfaceAndTooManyFrames) {
   Character point = bending_tube();
   for (Vec3& x : point.parts[0].positions) x = Vec3(1, 2, 3);
   EXPECT_TRUE(says(refusal(point), "one point"));
+}
+
+// Vertices of no face are left out with a word, in a sequence as in a model.
+TEST_F(Convert, SaysHowManyVerticesOfNoFaceAreLeftOut) {
+  const std::vector<RawTriangle> faces{{0, 2, 3}};
+  EXPECT_EQ(note_on_loose_vertices(4, faces),
+            "1 vertex is of no face and is left out: no answer is about it");
+  EXPECT_EQ(note_on_loose_vertices(6, faces),
+            "3 vertices are of no face and are left out: no answer is about them");
+  EXPECT_EQ(note_on_loose_vertices(3, std::vector<RawTriangle>{{0, 1, 2}}), "");
+
+  for (const char* height : {"1", "-1"}) {
+    std::ofstream obj(root / (std::string("f.") + (*height == '-' ? "1" : "0") + ".obj"));
+    obj << "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 " << height << "\nf 1 2 3\n";
+  }
+  report = import_sequence(root / "f.0.obj", {}, {}, root / "clip.h5", root / "sources");
+  ASSERT_EQ(report.notes.size(), 2u);
+  EXPECT_EQ(report.notes[1], note_on_loose_vertices(4, faces));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "scenes/character/character.h"
@@ -40,6 +41,10 @@ struct ChosenSurface {
   std::vector<std::size_t> raw_triangle;
   static constexpr std::size_t kFilled = std::numeric_limits<std::size_t>::max();
 };
+
+// Says how many vertices of a file are of no face. They are left out of imported surfaces, because files
+// hold many that mean nothing. Empty where every vertex is of a face.
+std::string note_on_loose_vertices(std::size_t vertices, std::span<const RawTriangle> triangles);
 
 // Welds the raw surface, fills holes, turns components that face inward and chooses components, all as the
 // options say. Records each step in the report. Throws InputError for a weld tolerance and a component that
