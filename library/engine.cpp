@@ -10,6 +10,7 @@
 #include "core/detect/contact_geometry.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
+#include "core/mesh/mean_edge.h"
 #include "core/session/vertex_bounds.h"
 #include "library/paths.h"
 
@@ -22,6 +23,9 @@ using Faces = SelfCollision::Faces;
 constexpr int kMostThreads = 1024;  // each has memory of its own
 constexpr std::size_t kMostLabels = 1000;
 constexpr int kFilteredSteps = 16;  // after a step in which something excluded touched
+// The first reach of a search for bounds of vertices, in mean edges, and by how much each further one is
+// wider.
+constexpr double kFirstReach = 0.5, kWider = 4;
 
 // A vertex's coordinates stand side by side in both, so the caller's rows are read where they are.
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
@@ -121,11 +125,11 @@ void SelfCollision::Engine::move(std::size_t obstacle, const Positions& start, c
   obstacles_->move(obstacle, from, to);
 }
 
-void SelfCollision::Engine::step(const Motion& motion, bool first, bool any_contact) {
-  step_itself(first ? first_ : all_, motion, any_contact && !options_.exclude.ongoing);
+void SelfCollision::Engine::step(const Motion& motion, bool first, Session::Sought sought) {
+  step_itself(first ? first_ : all_, motion, options_.exclude.ongoing ? Session::Sought::contacts : sought);
   if (options_.exclude.ongoing && answer_.start.total > 0) leave_out_ongoing(motion, first);
   if (!obstacles_) return;
-  obstacles_->step(motion, first, options_.check_start, touched_, crossed_);
+  obstacles_->step(motion, first, sought == Session::Sought::time, options_.check_start, touched_, crossed_);
   const std::optional<double> earliest = time();
   if (first && earliest)
     for (std::vector<cscd::Contact>* contacts : {&answer_.found.contacts, &touched_.contacts})
@@ -162,9 +166,23 @@ bool SelfCollision::Engine::is_free(const Motion& motion) {
     check_finite(motion.end(), "end positions");
     return false;
   }
-  step(motion, true, true);
+  step(motion, true, Session::Sought::any_contact);
   if (answer_.start.total > 0) crossing_start_ = copy_of(motion.start());
   return !crosses() && !time();
+}
+
+std::optional<double> SelfCollision::Engine::free_until(const Motion& motion) {
+  if (same_bits(motion.start(), crossing_start_)) {
+    check_finite(motion.end(), "end positions");
+    return 0;
+  }
+  step(motion, true, Session::Sought::time);
+  if (answer_.start.total > 0) crossing_start_ = copy_of(motion.start());
+  if (crosses()) return 0;
+  // The time of a contact is off by at most 2^-50, and the product with a share rounds by less than that.
+  constexpr double kSlack = 0x1p-49;
+  const std::optional<double> earliest = time();
+  return earliest ? std::optional(std::max(0.0, *earliest - kSlack)) : std::nullopt;
 }
 
 void SelfCollision::Engine::candidates(const Motion& motion, double radius, Candidates& out) {
@@ -189,23 +207,46 @@ SelfCollision::PathsAnswer SelfCollision::Engine::true_motion(const Paths& paths
                       setup(false, exclusions_.empty() ? nullptr : &exclusions_));
 }
 
+// The near is found first: it says of most vertices that they get less than the cap, so that farther pairs
+// are looked for, and kept, only where they matter. A wide cap then takes no more memory than a narrow one.
 std::vector<double> SelfCollision::Engine::vertex_bounds(std::span<const Vec3> pose, double cap) {
-  // Pairs farther apart than this do not bound anything below the cap. The slack exceeds the roundings of
-  // the sums.
-  const double slack = 32 * kUnitRoundoff * (thickness_.largest() + 2 * cap);
-  const Thickness reach(options_.thickness + 2 * cap + slack, options_.vertex_thickness);
-  if (!(cap >= 0) || !std::isfinite(reach.largest()))
+  if (!(cap >= 0) || !std::isfinite(thickness_.largest() + 4 * cap))
     throw InputError("vertex_bounds: cap " + exact_text(cap) +
                      "; give a length of at least 0 of which twice, with the thickness, is finite");
+  const double edge = mean_edge(mesh_, reference_);  // 0 where squares underflow
+  double reach = edge > 0 ? std::min(cap, kFirstReach * edge) : cap;
+  std::vector<double> caps(mesh_.vertex_count(), reach), most(mesh_.vertex_count(), cap);
+  for (;;) {
+    const VertexBounds bounds = bounds_within(pose, caps);
+    if (reach >= cap) return bounds.find();
+    const std::vector<double> known = bounds.find_most(cap);
+    for (std::size_t v = 0; v < most.size(); ++v) most[v] = std::min(most[v], known[v]);
+    if (*std::ranges::max_element(most) <= reach) return bounds.find();
+    reach = std::min(cap, kWider * reach);
+    for (std::size_t v = 0; v < most.size(); ++v) caps[v] = std::min(most[v], reach);
+  }
+}
+
+VertexBounds SelfCollision::Engine::bounds_within(std::span<const Vec3> pose,
+                                                  const std::vector<double>& caps) {
+  // Pairs farther apart than this stay apart while no vertex moves farther than its cap. The slack exceeds
+  // the roundings of the sums.
+  std::vector<double> moved = caps;
+  if (beside_) moved.resize(moved.size() + beside_->positions.size(), 0);
+  const double widest = *std::ranges::max_element(caps);
+  const double slack = 32 * kUnitRoundoff * (thickness_.largest() + 2 * widest);
+  const bool same = std::ranges::all_of(caps, [&](double own) { return own == widest; });
+  const Thickness reach = same ? Thickness(thickness_.largest() + 2 * widest + slack)
+                               : Thickness(thickness_.largest() + slack, moved);
   const Motion rest(pose, pose);
-  VertexBounds bounds(mesh_.vertex_count(), cap);
+  VertexBounds bounds(caps);
   search().find(rest, reach, found_);
   bounds.add(mesh_, rest, found_, thickness_);
   if (obstacles_) {
     obstacles_->find_candidates(rest, reach, found_);
     if (!found_.empty()) bounds.add(obstacles_->together(), obstacles_->motion(), found_, thickness_);
   }
-  return bounds.find();
+  return bounds;
 }
 
 void SelfCollision::Engine::check_labels() const {
@@ -288,9 +329,9 @@ CandidateSearch& SelfCollision::Engine::search() {
   return *search_;
 }
 
-void SelfCollision::Engine::step_itself(Question& question, const Motion& motion, bool any_contact) {
+void SelfCollision::Engine::step_itself(Question& question, const Motion& motion, Session::Sought sought) {
   if (question.filtered_steps == 0) {
-    plain(question).step(motion, nullptr, answer_, any_contact && exclusions_.empty());
+    plain(question).step(motion, nullptr, answer_, exclusions_.empty() ? sought : Session::Sought::contacts);
     if (exclusions_.empty() || is_thick()) return;
     const std::size_t left_out = leave_out();
     if (left_out > 0) question.filtered_steps = kFilteredSteps;
@@ -323,7 +364,7 @@ void SelfCollision::Engine::leave_out_ongoing(const Motion& motion, bool first) 
     });
   };
   if (leave_out() == 0 || !first || !answer_.found.contacts.empty()) return;
-  step_itself(all_, motion, false);
+  step_itself(all_, motion, Session::Sought::contacts);
   leave_out();
   keep_first(answer_.found);
 }

@@ -15,6 +15,7 @@
 #include "core/session/candidates.h"
 #include "core/session/obstacles.h"
 #include "core/session/session.h"
+#include "core/session/vertex_bounds.h"
 #include "library/arguments.h"
 #include "library/crossings.h"
 
@@ -41,13 +42,15 @@ class SelfCollision::Engine {
 
   void move(std::size_t obstacle, const Positions& start, const Positions& end);
 
-  // Answers one step. The answer is kept until the next. With `any_contact`, it need not be the first one.
-  void step(const Motion& motion, bool first, bool any_contact = false);
+  // Answers one step. The answer is kept until the next.
+  void step(const Motion& motion, bool first, Session::Sought sought = Session::Sought::contacts);
   bool crosses() const { return answer_.start.total + crossed_.total > 0; }
   std::optional<double> time() const;  // of the first contact
   void write(const Motion& motion, Answer& out) const;
 
   bool is_free(const Motion& motion);
+  // Returns the time up to which nothing touches, 0 if something crosses at the start; null if nothing does.
+  std::optional<double> free_until(const Motion& motion);
   void candidates(const Motion& motion, double radius, Candidates& out);
   SelfCollision::Crossings crossings(std::span<const Vec3> pose);
   PathsAnswer true_motion(const Paths& paths, double from, double to, double resolution);
@@ -75,7 +78,10 @@ class SelfCollision::Engine {
   CrossingSearch& crossing_search();
   CandidateSearch& search();
 
-  void step_itself(Question& question, const Motion& motion, bool any_contact);
+  // The pairs that matter while no vertex moves farther than its cap.
+  VertexBounds bounds_within(std::span<const Vec3> pose, const std::vector<double>& caps);
+
+  void step_itself(Question& question, const Motion& motion, Session::Sought sought);
   std::size_t leave_out();
   void leave_out_ongoing(const Motion& motion, bool first);
 
@@ -96,7 +102,8 @@ class SelfCollision::Engine {
   cscd::Crossings crossed_;  // of the mesh and obstacles
   std::vector<FeaturePair> found_;
   std::optional<CrossingSearch> crossing_search_;
-  std::vector<Vec3> crossing_start_;  // the last one that is_free() met
+  // The last one that is_free() or free_until() met.
+  std::vector<Vec3> crossing_start_;
 };
 
 }  // namespace cscd

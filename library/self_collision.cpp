@@ -99,13 +99,9 @@ double SelfCollision::largest_step(const Positions& start, const Positions& end,
   return ask(engine_, [&](Engine& engine) {
     if (!(safety > 0 && safety <= 1))
       throw InputError("largest_step: safety " + exact_text(safety) + "; give a number in (0, 1]");
-    engine.step(engine.motion(start, end), true);
-    if (engine.crosses()) return 0.0;
-    const std::optional<double> time = engine.time();
+    const std::optional<double> time = engine.free_until(engine.motion(start, end));
     if (!time) return 1.0;
-    // The time of a contact is off by at most 2^-50, and the product rounds by less than that.
-    constexpr double kSlack = 0x1p-49;
-    return std::max(0.0, safety * (*time - kSlack));
+    return safety * *time;
   });
 }
 

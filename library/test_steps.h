@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <map>
 #include <memory>
+#include <random>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -49,17 +50,19 @@ inline FaceRows face_rows(std::span<const Triangle> triangles) {
 }
 
 // A step of a whole scene: of a surface, and of a second one beside it if there is one. The object under test
-// takes the first surface as its mesh, and the second one as an obstacle.
+// takes the first surface as its mesh, and the second one as an obstacle. Every fourth surface has loose
+// vertices, which are of no face.
 struct SceneStep {
   TriangleMesh mesh;  // both surfaces
   FaceRows faces;     // of the first surface alone
   std::vector<Vec3> all_start, all_end;
   Rows start, end;  // of the first surface alone
 
-  explicit SceneStep(std::uint64_t seed) : SceneStep(scenes_of(seed), nullptr) {}
+  explicit SceneStep(std::uint64_t seed) : SceneStep(seed, scenes_of(seed), nullptr) {}
   // A second surface stands beside the first.
   SceneStep(std::uint64_t seed, std::uint64_t beside, const Vec3& offset)
-      : SceneStep(scenes_of(seed), std::make_unique<scenes::RandomInterval>(scenes_of(beside)), offset) {}
+      : SceneStep(seed, scenes_of(seed), std::make_unique<scenes::RandomInterval>(scenes_of(beside)),
+                  offset) {}
   Motion motion() const { return {all_start, all_end}; }
   // The number of vertices of the first surface.
   std::size_t own() const { return static_cast<std::size_t>(start.rows()); }
@@ -70,26 +73,38 @@ struct SceneStep {
   static scenes::RandomInterval scenes_of(std::uint64_t seed) {
     return seed % 3 == 0 ? scenes::make_torn_interval(seed) : scenes::make_random_interval(seed);
   }
-  static std::vector<Vec3> list(std::span<const Vec3> positions) {
-    return {positions.begin(), positions.end()};
+  static std::size_t loose_of(std::uint64_t seed) { return seed % 4 == 1 ? 12 : 0; }
+  // Positions with as many loose ones behind them, each somewhere between two vertices.
+  static std::vector<Vec3> with_loose(std::span<const Vec3> positions, std::size_t count,
+                                      std::uint64_t seed) {
+    std::vector<Vec3> out(positions.begin(), positions.end());
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> share(-0.2, 1.2);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 &a = positions[random() % positions.size()], &b = positions[random() % positions.size()];
+      out.push_back(a + share(random) * (b - a));
+    }
+    return out;
   }
-  static std::vector<Triangle> together(const scenes::Clip& own, const scenes::RandomInterval* beside) {
+  static std::vector<Triangle> together(const scenes::Clip& own, std::size_t loose,
+                                        const scenes::RandomInterval* beside) {
     std::vector<Triangle> out = own.header().triangles;
     if (beside == nullptr) return out;
-    const auto first = static_cast<std::int32_t>(own.header().vertex_count);
+    const auto first = static_cast<std::int32_t>(own.header().vertex_count + loose);
     for (Triangle t : beside->clip.header().triangles) {
       for (VertexId& v : t) v = VertexId{first + static_cast<std::int32_t>(v)};
       out.push_back(t);
     }
     return out;
   }
-  SceneStep(const scenes::RandomInterval& own, std::unique_ptr<scenes::RandomInterval> beside,
-            const Vec3& offset = Vec3::Zero())
-      : mesh(together(own.clip, beside.get()),
-             own.clip.header().vertex_count + (beside ? beside->clip.header().vertex_count : 0)),
+  SceneStep(std::uint64_t seed, const scenes::RandomInterval& own,
+            std::unique_ptr<scenes::RandomInterval> beside, const Vec3& offset = Vec3::Zero())
+      : mesh(together(own.clip, loose_of(seed), beside.get()),
+             own.clip.header().vertex_count + loose_of(seed) +
+                 (beside ? beside->clip.header().vertex_count : 0)),
         faces(face_rows(own.clip.header().triangles)),
-        all_start(list(own.clip.frame(0).positions)),
-        all_end(list(own.clip.frame(1).positions)),
+        all_start(with_loose(own.clip.frame(0).positions, loose_of(seed), seed)),
+        all_end(with_loose(own.clip.frame(1).positions, loose_of(seed), seed + (seed % 8 == 1))),
         start(rows(all_start)),
         end(rows(all_end)) {
     if (!beside) return;
@@ -150,7 +165,8 @@ inline Truth truth_of(const SceneStep& step, const Exclusions& exclusions, const
   for_each_feature_pair(step.mesh, step.motion(), [&](const FeaturePair& pair, const Box& a, const Box& b) {
     const double thick = thickness.of(step.mesh, pair);
     if (a.exteriorDistance(b) > thick * (1 + 1e-12) || exclusions.excludes(step.mesh, pair)) return;
-    if (std::ranges::all_of(carriers(step.mesh, pair), [&](const CrossingPair& triangles) {
+    const std::vector<CrossingPair> carried_by = carriers(step.mesh, pair);
+    if (!carried_by.empty() && std::ranges::all_of(carried_by, [&](const CrossingPair& triangles) {
           return exclusions.excludes(step.mesh, TrianglePair{triangles.first, triangles.second});
         }))
       return;

@@ -142,6 +142,30 @@ TEST(VertexBounds, LargerOnesAreNotSafe) {
   EXPECT_GT(broken, 5u);
 }
 
+// A wide cap says of most vertices what a narrow one says, and takes no more: the near is found first. What
+// is far from everything gets the cap. Mutation: pairs within the cap are left out where they matter.
+TEST(VertexBounds, WideCapsFindTheNearFirst) {
+  for (std::uint64_t seed = 2; seed <= 24; ++seed) {
+    const SceneStep step(seed);
+    SelfCollision body(step.faces, step.start);
+    const std::vector<double> narrow = body.vertex_bounds(step.start, 0.2),
+                              wide = body.vertex_bounds(step.start, 20);
+    std::size_t same = 0;
+    double longest = 0;
+    for (std::size_t v = 0; v < narrow.size(); ++v) {
+      same += std::abs(narrow[v] - std::min(wide[v], 0.2)) < 1e-9;
+      longest = std::max(longest, wide[v]);
+    }
+    EXPECT_GT(2 * same, narrow.size()) << seed;
+    EXPECT_GT(longest, 0);
+  }
+  // Two faces far apart share the way between them.
+  const FaceRows faces{{0, 1, 2}, {3, 4, 5}};
+  Rows pose{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 30}, {1, 0, 30}, {0, 1, 30}};
+  for (const double bound : SelfCollision(faces, pose).vertex_bounds(pose, 100)) EXPECT_NEAR(bound, 15, 1e-9);
+  for (const double bound : SelfCollision(faces, pose).vertex_bounds(pose, 12)) EXPECT_EQ(bound, 12);
+}
+
 // An obstacle at rest takes no share of the room, and one that moves takes what it moves.
 TEST(VertexBounds, ObstaclesKeepTheirOwnMotion) {
   const FaceRows face{{0, 1, 2}};
@@ -177,6 +201,8 @@ TEST(VertexBounds, AreComparedWithHalvesAndWithPlanes) {
     const SelfCollision::Candidates near = body.candidates(step.start, step.start, 2 * kCap);
     std::mt19937_64 random(seed);
     std::vector<double> half(step.own(), kCap), nearest(step.own(), kCap), length(step.own(), kCap);
+    double largest = 0;
+    for (const Vec3& p : step.all_start) largest = std::max(largest, p.norm());
     std::vector<Vec3> along;
     for (std::size_t v = 0; v < step.own(); ++v) along.push_back(direction(random));
     const auto take = [&](const std::array<int, 4>& vertices, bool edges) {
@@ -202,7 +228,9 @@ TEST(VertexBounds, AreComparedWithHalvesAndWithPlanes) {
       take({v, step.faces(f, 0), step.faces(f, 1), step.faces(f, 2)}, false);
     for (const std::array<int, 4>& ends : near.edge_edge) take(ends, true);
     for (std::size_t v = 0; v < step.own(); ++v) {
-      EXPECT_GE(found[v], half[v] - 1e-9) << "half of the room is the least that a vertex gets";
+      // A loose vertex may be in a face up to rounding.
+      EXPECT_GE(found[v], half[v] - 1e-9 - 0x1p-46 * largest)
+          << "half of the room is the least that a vertex gets";
       halves += half[v], bounds += found[v], planes += length[v], half_of_nearest += nearest[v];
     }
   }

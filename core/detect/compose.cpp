@@ -13,7 +13,9 @@
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/filter_block.h"
 #include "core/elementary/exact/static_contact.h"
+#include "core/elementary/question/apart_before.h"
 #include "core/elementary/question/relative_box.h"
+#include "core/hierarchy/loose_vertices.h"
 
 namespace cscd {
 namespace {
@@ -21,6 +23,9 @@ namespace {
 // A slack that exceeds the error of a contact time (2^-50, core/elementary/exact/exact.h), so that all
 // feature pairs that touch at the earliest time are tested.
 constexpr double kTimeSlack = 0x1p-48;
+
+// Where the time alone is asked for, contacts need not be told apart that differ by this share of it.
+constexpr double kTimeAloneShare = 0x1p-42;
 
 // So many feature pairs are remembered. To test them takes some microseconds.
 constexpr std::size_t kRemembered = 8;
@@ -56,7 +61,8 @@ class PairTester : public TrianglePairSink {
         options_(std::move(options)),
         team_(options_.threads),
         clock_(clock),
-        plain_sign_(setup.pipeline == Pipeline::published) {
+        plain_sign_(setup.pipeline == Pipeline::published),
+        loose_(mesh_, setup.reference, options_.own_vertices) {
     if (options_.owners && may_own()) owners_.emplace(mesh_);
   }
 
@@ -67,18 +73,31 @@ class PairTester : public TrianglePairSink {
     start_ = step.crossings;
     most_ = step.most_crossings;
     any_contact_ = step.any_contact && step.crossings == nullptr;
+    time_alone_ = step.time_alone && first_only_;
+    stops_at_start_ = time_alone_ && step.crossings == nullptr;
     first_ = first_only_ || any_contact_;
     if (start_ != nullptr) start_->pairs.clear(), start_->total = 0;
     out_ = &out;
     counts_ = {};
     met_.start_interval();
     earliest_ = 1;
+    found_any_ = false;
+    left_out_from_ = 2;
   }
   // Tests the feature pairs that touched first in the last step in which any did. Those that touch bound the
   // time until which the culler has to look.
   void test_remembered() {
     if (remembered_.empty()) return;
     left_ = remembered_;
+    test_left();
+  }
+  // Tests the feature pairs of loose vertices, which no pair of triangles carries.
+  void test_loose() {
+    if (loose_.empty()) return;
+    left_.clear();
+    loose_.for_each_near(*motion_, thickness_.largest(),
+                         [&](VertexId v, TriangleId t) { left_.push_back(FeaturePair::of(v, t)); });
+    counts_.feature_pairs += left_.size();
     test_left();
   }
   void forget() { remembered_.clear(); }
@@ -93,6 +112,14 @@ class PairTester : public TrianglePairSink {
     test_always(options_.assignment->always());
   }
   const PairCounts& counts() const { return counts_; }
+  // What was left out may touch a little earlier than what was found.
+  void settle_time() {
+    if (!(left_out_from_ < earliest_)) return;
+    const auto first = std::ranges::min_element(out_->contacts, {}, [](const Contact& contact) {
+      return contact.verdict == Verdict::contact ? contact.time : 2;
+    });
+    first->time = left_out_from_;
+  }
 
   void leave_start() override {
     flush();
@@ -277,13 +304,25 @@ class PairTester : public TrianglePairSink {
       if (i + kAhead < left_.size()) met_.fetch(left_[i + kAhead]);
       const FeaturePair& pair = left_[i];
       if (!met_.insert(pair) || (exclusions_ != nullptr && exclusions_->excludes(mesh_, pair))) continue;
-      const double thick = thickness_.of(mesh_, pair);
       if (pair.kind == FeaturePair::Kind::vertex_face)
-        vertex_faces_.add(pair, vertex_face(mesh_, *motion_, VertexId{pair.a}, TriangleId{pair.b}), thick);
+        add(vertex_faces_, pair, vertex_face(mesh_, *motion_, VertexId{pair.a}, TriangleId{pair.b}));
       else
-        edge_edges_.add(pair, edge_edge(mesh_, *motion_, EdgeId{pair.a}, EdgeId{pair.b}), thick);
+        add(edge_edges_, pair, edge_edge(mesh_, *motion_, EdgeId{pair.a}, EdgeId{pair.b}));
     }
     test_all(vertex_faces_), test_all(edge_edges_);
+  }
+  // Whoever wants the time alone needs no pair that cannot touch earlier than what was found.
+  template <class Query>
+  void add(Tests<Query>& tests, const FeaturePair& pair, const Query& query) {
+    const double thick = thickness_.of(mesh_, pair);
+    if (time_alone_ && found_any_) {
+      const double enough = (1 - kTimeAloneShare) * earliest_, before = apart_before(query, thick, enough);
+      if (before >= enough) {
+        left_out_from_ = std::min(left_out_from_, before);
+        return;
+      }
+    }
+    tests.add(pair, query, thick);
   }
   template <class Query>
   void test_all(Tests<Query>& tests) {
@@ -306,7 +345,8 @@ class PairTester : public TrianglePairSink {
     if (answer.verdict != Verdict::apart) out_->contacts.push_back({pair, answer.verdict, answer.time});
     if (answer.verdict != Verdict::contact) return;
     earliest_ = std::min(earliest_, answer.time);
-    if (any_contact_) close();
+    found_any_ = true;
+    if (any_contact_ || (stops_at_start_ && earliest_ <= 0)) close();
   }
 
   const TriangleMesh& mesh_;
@@ -317,12 +357,16 @@ class PairTester : public TrianglePairSink {
   Team team_;
   StageClock& clock_;
   const bool plain_sign_;  // the published filter
+  LooseVertices loose_;
   const Motion* motion_ = nullptr;
   Thickness thickness_;
   ContactSet* out_ = nullptr;
   Crossings* start_ = nullptr;
   std::size_t most_ = 0;      // crossings that are kept
   bool any_contact_ = false;  // one is enough
+  bool time_alone_ = false;   // Step::time_alone
+  bool stops_at_start_ = false, found_any_ = false;
+  double left_out_from_ = 2;  // with time_alone_, no pair that was left out touches before
   bool first_ = false;        // only the contacts of the earliest time, or any one, are asked for
   PairCounts counts_;
   std::vector<TrianglePair> kept_;     // the block without what is excluded
@@ -366,6 +410,7 @@ class ComposedDetector : public Detector {
     bool classified = false;
     clock_.enter(Stage::elementary);
     tester_.test_remembered();
+    tester_.test_loose();
     if (!tester_.closed()) {
       clock_.enter(Stage::refit);
       culler_->refit_beginning(step, tester_.until());
@@ -382,6 +427,7 @@ class ComposedDetector : public Detector {
         *report.cull.bvot += *rest;
         tester_.finish_interval();
       }
+    tester_.settle_time();
     clock_.stop();
 
     report.cull.pctp = tester_.count();

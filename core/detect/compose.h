@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
 #include "core/detect/carried_pairs.h"
@@ -24,16 +25,19 @@ struct PairOptions {
   // A pair of triangles is tested for the feature pairs that it owns alone (feature_owners.h), where the
   // culler says that this is enough.
   bool owners = false;
+  // With a number above 0, loose vertices are held against triangles only where one of the two is among the
+  // first so many vertices and the other is not.
+  std::size_t own_vertices = 0;
 };
 
 // Makes a detector out of a culling strategy and an elementary test: the way of one interval. Every strategy
 // shares what happens behind the culler: relative boxes (optional), expansion into feature pairs, each of
 // which is tested once, the certified non-penetration filter, and the elementary test. The detector owns the
 // clock of the interval. Where a culler has looked for the first contact alone, and anything passed on
-// touches or is undecided, it is asked for the rest, unless the caller wants the first contact alone. In the
-// pipeline `published`, the filter is the published one: the plain sign of the coplanarity cubic, which may
-// lose contacts because it has no error bound. What `setup` refers to must
-// outlive the detector.
+// touches or is undecided, it is asked for the rest, unless the caller wants the first contact alone. Loose
+// vertices (hierarchy/loose_vertices.h), of which a culler knows nothing, are held against triangles first.
+// In the pipeline `published`, the filter is the published one: the plain sign of the coplanarity cubic,
+// which may lose contacts because it has no error bound. What `setup` refers to must outlive the detector.
 std::unique_ptr<Detector> compose(std::unique_ptr<Culler> culler, const StrategyInput& setup,
                                   PairOptions options = {});
 

@@ -98,8 +98,9 @@ TEST(Compose, ExpandsAPairOfTrianglesIntoTheFeaturePairsThatShareNoVertex) {
   for (const Expansion& e : {Expansion{"disjoint", {corners(0, 1, 2), corners(3, 4, 5)}, 6, 9},
                              Expansion{"share a vertex", {corners(0, 1, 2), corners(2, 3, 4)}, 4, 5},
                              Expansion{"share an edge", {corners(0, 1, 2), corners(2, 1, 3)}, 2, 2}}) {
-    const TriangleMesh mesh(e.triangles, 6);
-    const std::vector<Vec3> x = flat(6);
+    const std::size_t vertices = e.vertex_face == 6 ? 6 : e.vertex_face == 4 ? 5 : 4;
+    const TriangleMesh mesh(e.triangles, vertices);
+    const std::vector<Vec3> x = flat(vertices);
     g_asked.clear();
     ContactSet out;
     const Report report = run(mesh, x, mirrored(x), {pair_of(0, 1)}, out, kRecorder);
@@ -305,6 +306,53 @@ TEST(TrianglePairSink, HandsOnEveryPairOnceInBlocksOfAnySize) {
     EXPECT_EQ(sink.count(), 0u);
     EXPECT_LE(sink.taken.size(), 101u);
   }
+}
+
+// A flat sheet folds onto itself within its plane, and everything on one side arrives at t = 1/2. Mutations:
+// nothing is left out; the search goes on after a contact at t = 0; what is left out is earlier.
+TEST(Compose, TheTimeAloneLeavesOutWhatIsNotEarlier) {
+  constexpr std::int32_t kSide = 8;
+  std::vector<Vec3> start, end;
+  std::vector<Triangle> triangles;
+  for (std::int32_t j = 0; j <= kSide; ++j)
+    for (std::int32_t i = 0; i <= kSide; ++i) {
+      start.emplace_back(i, j, 0);
+      end.emplace_back(std::min(i, kSide - i), j, 0);
+      if (i == kSide || j == kSide) continue;
+      const std::int32_t v = j * (kSide + 1) + i, above = v + kSide + 1;
+      triangles.push_back({VertexId{v}, VertexId{v + 1}, VertexId{above + 1}});
+      triangles.push_back({VertexId{v}, VertexId{above + 1}, VertexId{above}});
+    }
+  const TriangleMesh mesh(triangles, start.size());
+  const StrategyInput setup{mesh, start, nullptr, *find_elementary_test("filtered_exact"), 1, true};
+  const auto detector = compose(std::make_unique<ListCuller>(all_pairs(mesh)), setup);
+  for (const bool folded : {false, true}) {
+    std::uint64_t tests[2];
+    for (const bool alone : {false, true}) {
+      ContactSet out;
+      const Motion motion(folded ? end : start, end);
+      tests[alone] = detector->detect({.motion = motion, .time_alone = alone}, out).pairs.elementary_tests;
+      out.sort();
+      ASSERT_FALSE(out.contacts.empty());
+      EXPECT_NEAR(out.contacts.front().time, folded ? 0 : 0.5, 1e-13);
+      EXPECT_GT(out.contacts.front().time, folded ? -1 : 0.4999);
+    }
+    EXPECT_GT(tests[0], 20 * tests[1]) << folded;
+  }
+  // Of two that arrive one after the other, the earlier is found, in either order.
+  test::Shape two;
+  two.positions = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 1}, {1, 2, 1}, {2, 1, 1}};
+  two.triangles = {{VertexId{0}, VertexId{1}, VertexId{2}}, {VertexId{3}, VertexId{4}, VertexId{5}}};
+  std::vector<Vec3> down = two.positions;
+  down[3].z() = -1, down[4].z() = -1.5, down[5].z() = -1.25;
+  const TriangleMesh pair = two.mesh();
+  ContactSet out;
+  compose(std::make_unique<ListCuller>(all_pairs(pair)),
+          {pair, two.positions, nullptr, *find_elementary_test("filtered_exact"), 1, true})
+      ->detect({.motion = Motion(two.positions, down), .time_alone = true}, out);
+  out.sort();
+  ASSERT_FALSE(out.contacts.empty());
+  EXPECT_NEAR(out.contacts.front().time, 0.4, 1e-12);
 }
 
 }  // namespace

@@ -180,6 +180,7 @@ bool Exclusions::excludes(const TriangleMesh& mesh, const FeaturePair& pair) con
   const std::span<const TriangleId> first =
       face ? mesh.triangles_at(VertexId{pair.a}) : mesh.triangles_at(EdgeId{pair.a});
   const std::span<const TriangleId> second = face ? std::span(&itself, 1) : mesh.triangles_at(EdgeId{pair.b});
+  if (first.empty()) return false;  // no pair of triangles carries what a loose vertex does
   return std::ranges::all_of(first, [&](TriangleId s) {
     return std::ranges::all_of(second, [&](TriangleId t) {
       return s == t || excludes(mesh, TrianglePair{s, t});

@@ -33,7 +33,12 @@ TEST(FeatureOwners, OwnEveryFeaturePairOnce) {
         ++pairs;
       }
     std::ranges::sort(owned);
-    EXPECT_EQ(owned, test::all_feature_pairs(mesh));
+    std::vector<FeaturePair> all = test::all_feature_pairs(mesh);
+    std::erase_if(all, [&](const FeaturePair& features) {  // no triangle owns a loose vertex
+      return features.kind == FeaturePair::Kind::vertex_face &&
+             mesh.triangles_at(VertexId{features.a}).empty();
+    });
+    EXPECT_EQ(owned, all);
     EXPECT_GT(4 * nothing, pairs);
   }
 }

@@ -45,6 +45,10 @@ struct Step {
   // Whether the caller wants to know no more than whether anything touches. A detector may then stop at any
   // contact.
   bool any_contact = false;
+  // Whether the caller wants to know no more than the earliest time, to a share of 2^-42. A detector of the
+  // first contact may then leave out contacts that are not earlier than others by more, and may stop at a
+  // contact at t = 0.
+  bool time_alone = false;
 };
 
 }  // namespace cscd

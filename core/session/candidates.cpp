@@ -52,8 +52,9 @@ bool within(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& p
 
 }  // namespace
 
-CandidateSet::CandidateSet(const TriangleMesh& mesh, const Exclusions* exclusions)
-    : mesh_(mesh), exclusions_(exclusions) {
+CandidateSet::CandidateSet(const TriangleMesh& mesh, std::span<const Vec3> reference,
+                           const Exclusions* exclusions, std::size_t own_vertices)
+    : mesh_(mesh), exclusions_(exclusions), loose_(mesh, reference, own_vertices) {
   if (exclusions == nullptr) owners_.emplace(mesh);
 }
 
@@ -78,12 +79,22 @@ void CandidateSet::take(const Motion& motion, const Thickness& thickness, std::s
       CarriedPairs near{pairs[i], static_cast<CarriedPlaces>(carried_by(a, b) & wanted(pairs[i]))};
       if (near.places != 0 && !thickness.is_zero())
         near.places = not_farther_than(thickness.largest(), motion, a, b, near.places);
-      for_each_carried(mesh_, near, [&](const FeaturePair& features) {
-        if (!within(mesh_, motion, features, thickness) || !met_.insert(features)) return;
-        if (exclusions_ == nullptr || !exclusions_->excludes(mesh_, features)) out.push_back(features);
-      });
+      for_each_carried(mesh_, near,
+                       [&](const FeaturePair& features) { add(motion, thickness, features, out); });
     }
   }
+}
+
+void CandidateSet::take_loose(const Motion& motion, const Thickness& thickness,
+                              std::vector<FeaturePair>& out) {
+  loose_.for_each_near(motion, thickness.largest(),
+                       [&](VertexId v, TriangleId t) { add(motion, thickness, FeaturePair::of(v, t), out); });
+}
+
+void CandidateSet::add(const Motion& motion, const Thickness& thickness, const FeaturePair& features,
+                       std::vector<FeaturePair>& out) {
+  if (!within(mesh_, motion, features, thickness) || !met_.insert(features)) return;
+  if (exclusions_ == nullptr || !exclusions_->excludes(mesh_, features)) out.push_back(features);
 }
 
 // A complete culler passes on every triangle pair of which features come within the thickness.
@@ -101,6 +112,7 @@ void CandidateSearch::find(const Motion& motion, const Thickness& thickness, std
   culler_->classify(step);
   culler_->cull(sink);
   sink.flush();
+  set_.take_loose(motion, thickness, out);
 }
 
 }  // namespace cscd

@@ -10,6 +10,7 @@
 #include "core/detect/feature_owners.h"
 #include "core/detect/feature_pair_set.h"
 #include "core/detect/strategy.h"
+#include "core/hierarchy/loose_vertices.h"
 
 namespace cscd {
 
@@ -17,8 +18,10 @@ namespace cscd {
 // than their thickness. The boxes of both features' paths are at most so far apart along each axis.
 class CandidateSet {
  public:
-  // `exclusions` may be null. Everything must outlive the set.
-  CandidateSet(const TriangleMesh& mesh, const Exclusions* exclusions);
+  // `reference`, [vertices], is any pose, `exclusions` may be null, and `own_vertices` is about loose
+  // vertices (hierarchy/loose_vertices.h). The mesh and the exclusions must outlive the set.
+  CandidateSet(const TriangleMesh& mesh, std::span<const Vec3> reference, const Exclusions* exclusions,
+               std::size_t own_vertices = 0);
 
   // Forgets the triangle pairs of the last step.
   void start_step() { met_.start_interval(); }
@@ -26,13 +29,18 @@ class CandidateSet {
   // a step together hold every triangle pair that carries some feature pair within its thickness.
   void take(const Motion& motion, const Thickness& thickness, std::span<const TrianglePair> block,
             std::vector<FeaturePair>& out);
+  // Appends those of loose vertices, which no triangle pair carries.
+  void take_loose(const Motion& motion, const Thickness& thickness, std::vector<FeaturePair>& out);
 
  private:
+  void add(const Motion& motion, const Thickness& thickness, const FeaturePair& features,
+           std::vector<FeaturePair>& out);
   CarriedPlaces wanted(const TrianglePair& pair) const;
 
   const TriangleMesh& mesh_;
   const Exclusions* exclusions_;
   std::optional<FeatureOwners> owners_;
+  LooseVertices loose_;
   FeaturePairSet met_;
   std::vector<TrianglePair> block_;  // of which some feature pairs are wanted
 };
@@ -56,7 +64,8 @@ class CandidateSink : public TrianglePairSink {
 class CandidateSearch {
  public:
   // What `setup` refers to must outlive the search. `first_only` is not looked at.
-  explicit CandidateSearch(const StrategyInput& setup) : setup_(setup), set_(setup.mesh, setup.exclusions) {}
+  explicit CandidateSearch(const StrategyInput& setup)
+      : setup_(setup), set_(setup.mesh, setup.reference, setup.exclusions) {}
 
   // Replaces the content of `out` by feature pairs that hold every one that comes within its thickness at
   // some t and is not excluded. Pairs that a complete culler proves apart are not among them, nor are pairs

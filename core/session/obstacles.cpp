@@ -142,6 +142,7 @@ Obstacles::Obstacles(const TriangleMesh& own, std::span<const Vec3> reference, c
       at_rest_(first_vertex_.size(), true),
       pairs_(std::make_unique<ObstaclePairs>(own, reference, beside, positions)),
       start_test_(together_, std::make_unique<ObstaclePairs::View>(*pairs_, own_vertices_)) {
+  has_loose_ = count_loose_vertices(beside).count > 0;
   for (std::size_t& first : first_vertex_) first += own_vertices_;
   first_vertex_.push_back(together_.vertex_count());
   start_.insert(start_.end(), positions.begin(), positions.end());
@@ -159,11 +160,11 @@ void Obstacles::make_detectors() {
   const auto detector = [&](bool first) {
     const StrategyInput setup{together_, start_, nullptr, elementary_, 1, first, exclusions_};
     return compose(std::make_unique<ObstaclePairs::View>(*pairs_, own_vertices_), setup,
-                   {.relative_boxes = true});
+                   {.relative_boxes = true, .own_vertices = own_vertices_});
   };
   first_ = detector(true);
   all_ = detector(false);
-  candidates_.emplace(together_, exclusions_);
+  candidates_.emplace(together_, start_, exclusions_, own_vertices_);
 }
 
 Obstacles::~Obstacles() = default;
@@ -190,6 +191,11 @@ bool Obstacles::starts_where_a_free_step_ended(const Motion& own) const {
          same_bits(own.start(), std::span(end_).first(own_vertices_));
 }
 
+// Whether something of an obstacle comes near a box. Loose vertices are in no triangle's box.
+bool Obstacles::near(const Aabb& box) const {
+  return has_loose_ || pairs_->near(box);
+}
+
 // Computes the bounds of obstacles anew where some of them have moved.
 void Obstacles::bring_up_to_date() {
   if (!stale_) return;
@@ -197,13 +203,14 @@ void Obstacles::bring_up_to_date() {
   stale_ = false;
 }
 
-void Obstacles::step(const Motion& own, bool first, bool see_start, ContactSet& found, Crossings& start) {
+void Obstacles::step(const Motion& own, bool first, bool time_alone, bool see_start, ContactSet& found,
+                     Crossings& start) {
   found.clear();
   start.pairs.clear();
   start.total = 0;
   bring_up_to_date();
   const Aabb box = thickness_.is_zero() ? box_of(own) : thickened(box_of(own), thickness_.largest());
-  if (!pairs_->near(box)) {  // the start is apart as well
+  if (!near(box)) {  // the start is apart as well
     free_ = false;
     return;
   }
@@ -218,7 +225,8 @@ void Obstacles::step(const Motion& own, bool first, bool see_start, ContactSet& 
         return exclusions_->excludes(together_, TrianglePair{pair.first, pair.second});
       });
   }
-  (first ? first_ : all_)->detect({.motion = motion(), .thickness = thickness_}, found);
+  (first ? first_ : all_)
+      ->detect({.motion = motion(), .thickness = thickness_, .time_alone = time_alone}, found);
   found.sort();
   if (first) keep_first(found);
   // With exclusions two triangles may come to cross by a contact that is left out.
@@ -232,7 +240,7 @@ void Obstacles::find_candidates(const Motion& own, const Thickness& thickness,
   out.clear();
   candidates_->start_step();
   bring_up_to_date();
-  if (!pairs_->near(thickened(box_of(own), thickness.largest()))) return;
+  if (!near(thickened(box_of(own), thickness.largest()))) return;
   free_ = false;  // the positions of the last step are written over
   std::ranges::copy(own.start(), start_.begin());
   std::ranges::copy(own.end(), end_.begin());
@@ -240,6 +248,7 @@ void Obstacles::find_candidates(const Motion& own, const Thickness& thickness,
   CandidateSink sink(*candidates_, motion(), thickness, out);
   pairs_->cull(sink);
   sink.flush();
+  candidates_->take_loose(motion(), thickness, out);
 }
 
 }  // namespace cscd

@@ -46,8 +46,10 @@ class Obstacles {
 
   // Finds the contacts of the deforming surface with obstacles, sorted, and the pairs of a triangle of the
   // surface and one of an obstacle that cross at the start. With `first`, only contacts of the earliest time
-  // are asked for. Without `see_start`, `start` stays empty.
-  void step(const Motion& own, bool first, bool see_start, ContactSet& found, Crossings& start);
+  // are asked for, and with `time_alone` too, only what tells that time (Step::time_alone). Without
+  // `see_start`, `start` stays empty.
+  void step(const Motion& own, bool first, bool time_alone, bool see_start, ContactSet& found,
+            Crossings& start);
   // The motion of together() in the last step in which the surface's box came near an obstacle. Contacts of
   // that step refer to it, until find_candidates() is called.
   Motion motion() const { return {start_, end_}; }
@@ -60,6 +62,7 @@ class Obstacles {
   class ObstaclePairs;
 
   void make_detectors();
+  bool near(const Aabb& box) const;
   void bring_up_to_date();
   bool starts_where_a_free_step_ended(const Motion& own) const;
 
@@ -73,6 +76,7 @@ class Obstacles {
   std::vector<bool> follows_;  // [obstacles]: its next start is where the last step left it, bit for bit
   std::vector<bool> moved_;    // [obstacles]: has been moved since the last step
   std::vector<bool> at_rest_;  // [obstacles]: starts where it ends
+  bool has_loose_ = false;     // some vertex of an obstacle is of no triangle
   bool stale_ = false;         // some obstacle's bounds are those of another motion
   bool free_ = false;          // the last step was near, started without crossings and had no contact
   std::unique_ptr<ObstaclePairs> pairs_;

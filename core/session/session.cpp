@@ -152,6 +152,7 @@ void Session::ask(PreparedStrategy& asked, const Motion& motion, const Rig::Inte
                   StepAnswer& out) {
   Step step{
       .motion = motion, .bones = setup_.rig != nullptr ? bones : nullptr, .thickness = options_.thickness};
+  step.time_alone = sought_ == Sought::time;
   out.strategy = asked.strategy;
   if (start_known_) {
     // Two looks find all contacts of a step from an embedded start, the second one only where something
@@ -160,7 +161,7 @@ void Session::ask(PreparedStrategy& asked, const Motion& motion, const Rig::Inte
     const bool clear = !options_.ignore_starts && starts_.clear() && can_follow();
     step.starts_embedded = clear && (!touched_last_ || first_only());
     // Where it is not known whether the start is clear, the first contact says so, and no other does.
-    step.any_contact = any_contact_ && first_only() && (!is_thick() || clear);
+    step.any_contact = sought_ == Sought::any_contact && first_only() && (!is_thick() || clear);
     out.report = asked.detector->detect(step, out.found);
   } else {
     out.report = starts_.see(*asked.detector, step, out.found);
@@ -218,8 +219,8 @@ void Session::begin(const Motion& motion) {
   require_finite(motion.end(), "end positions");
 }
 
-void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out, bool any_contact) {
-  any_contact_ = any_contact;
+void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out, Sought sought) {
+  sought_ = sought;
   const Stopwatch whole;
   begin(motion);
   try {

@@ -78,9 +78,12 @@ class Session {
 
   // Answers one step. Positions have to be finite, unless the options ask for that to be checked. `bones`
   // holds the skeleton at both ends; null for a mesh without a rig. The answer is written into `out`, whose
-  // memory is used again. With `any_contact`, a session that was asked for the first contact may answer with
-  // any contact of a step that is not free.
-  void step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out, bool any_contact = false);
+  // memory is used again. A session that was asked for the first contact may answer with any contact of a
+  // step that is not free, or with any of the earliest time to a share of 2^-42 (Step::time_alone), if that
+  // is sought.
+  enum class Sought { contacts, any_contact, time };
+  void step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out,
+            Sought sought = Sought::contacts);
 
   // Returns what preparing the strategy has found out (StrategyInput::preparation); empty where it saves
   // nothing.
@@ -142,8 +145,8 @@ class Session {
   Meetings rest_;
   RestCrossings left_out_;
   bool touched_last_ = false;  // something did in the step before
-  bool any_contact_ = false;   // one is enough, whichever it is
-  bool start_known_ = false;   // what crosses at the start of the step that is being answered is known
+  Sought sought_ = Sought::contacts;
+  bool start_known_ = false;  // what crosses at the start of the step that is being answered is known
 };
 
 }  // namespace cscd

@@ -10,6 +10,7 @@
 #include "core/detect/contact_geometry.h"
 #include "core/detect/start/crossings.h"
 #include "core/fast/drvbc_fast.h"
+#include "core/hierarchy/loose_vertices.h"
 
 namespace cscd {
 namespace {
@@ -103,6 +104,10 @@ TrueMotion::TrueMotion(const VertexPaths& paths, const StrategyInput& setup, con
   if (paths.vertex_count() != vertices)
     throw InputError("true motion: the paths are those of " + std::to_string(paths.vertex_count()) +
                      " vertices, and the mesh has " + std::to_string(vertices));
+  if (const LooseCount loose = count_loose_vertices(setup.mesh); loose.count > 0)
+    throw InputError("true motion: knows surfaces alone, and " + std::to_string(loose.count) +
+                     (loose.count == 1 ? " vertex is" : " vertices are") + " of no face, the first of them " +
+                     std::to_string(+loose.first) + "; leave them out");
   detector_ = strategy.make(setup_).detector;
   for (std::size_t v = 0; v < vertices; ++v) everything_.push_back(VertexId{static_cast<std::int32_t>(v)});
   if (strategy.looks_by_signs && setup.mesh.closed_and_oriented() && setup.exclusions == nullptr)

@@ -47,7 +47,9 @@ void VertexBounds::add(const TriangleMesh& mesh, const Motion& motion, std::span
           pair.height[i] = (i < pair.split ? 1 : -1) * (at[i].dot(way) / length * unit);
       pair.apart = lowest(pair, true, {}) + lowest(pair, false, {}) > pair.least;
     }
-    pairs_.push_back(pair);
+    const bool may_come_close =
+        !pair.apart || !(lowest(pair, true, caps_) + lowest(pair, false, caps_) > pair.least);
+    if (may_come_close) pairs_.push_back(pair);
   }
 }
 
@@ -63,7 +65,7 @@ double VertexBounds::lowest(const Pair& pair, bool first, std::span<const double
 
 // Half of the room of each pair for each of its sides, or all of it where the other side has no bounds.
 std::vector<double> VertexBounds::halves() const {
-  std::vector<double> bounds(movable_, cap_);
+  std::vector<double> bounds = caps_;
   for (const Pair& pair : pairs_) {
     const double low[2] = {lowest(pair, true, {}), lowest(pair, false, {})};
     const bool shared = has_bounds(pair, 0) && has_bounds(pair, pair.split);
@@ -95,7 +97,7 @@ std::vector<double> VertexBounds::find() const {
 
   for (std::size_t v = 0; v < movable_; ++v) {
     if (!(bounds[v] > 0)) continue;
-    double room = cap_;
+    double room = caps_[v];
     for (std::size_t k = first[v]; k < first[v + 1]; ++k) {
       const Pair& pair = pairs_[place[k] / 4];
       const std::size_t i = place[k] % 4;
@@ -104,6 +106,21 @@ std::vector<double> VertexBounds::find() const {
     bounds[v] = std::max(bounds[v], room);
   }
   return bounds;
+}
+
+// What the halves of its neighbours leave to a vertex. In the end neighbours have no less.
+std::vector<double> VertexBounds::find_most(double cap) const {
+  const std::vector<double> least = halves();
+  std::vector<double> most(movable_, cap);
+  for (const Pair& pair : pairs_)
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (!has_bounds(pair, i)) continue;
+      const double room = pair.height[i] + lowest(pair, i >= pair.split, least) - pair.least;
+      double& own = most[pair.vertex[i]];
+      own = std::min(own, std::max(room, 0.0));
+    }
+  for (std::size_t v = 0; v < movable_; ++v) most[v] = std::max(most[v], std::min(least[v], cap));
+  return most;
 }
 
 }  // namespace cscd

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/detect/contact.h"
@@ -26,19 +28,23 @@ namespace cscd {
 // against its one n.
 class VertexBounds {
  public:
-  // Vertices from `movable` on move as the caller says, and have no bounds. `cap` is the largest bound.
-  VertexBounds(std::size_t movable, double cap) : movable_(movable), cap_(cap) {}
+  // `caps` holds the largest bound of each vertex. Vertices behind them move as the caller says, and have no
+  // bounds.
+  explicit VertexBounds(std::vector<double> caps) : movable_(caps.size()), caps_(std::move(caps)) {}
 
   // Takes pairs of features of one mesh, in the pose in which `motion` starts. At the end of the motion are
   // vertices from `movable` on, which move no farther than that in any direction; the ends of others are not
-  // looked at.
+  // looked at. Pairs that stay apart even if all their vertices move as far as their caps are not kept.
   void add(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
            const Thickness& thickness);
   // Returns the bounds, [movable], for pairs that were added. Pairs that were not must be farther apart than
-  // their thickness and twice the cap; a pair with a feature that has no bounds, than its thickness, the cap
-  // and what that feature moves. A pair that is not certainly farther apart than its thickness in the pose
+  // their thickness and the largest cap of either feature; a feature that has no bounds counts with what it
+  // moves. A pair that is not certainly farther apart than its thickness in the pose
   // gives its vertices the bound 0.
   std::vector<double> find() const;
+  // Returns for each vertex, [movable], a number that its bound would not exceed if caps were larger, but for
+  // `cap`, which it is where no pair says less.
+  std::vector<double> find_most(double cap) const;
 
  private:
   struct Pair {
@@ -55,7 +61,7 @@ class VertexBounds {
   std::vector<double> halves() const;
 
   std::size_t movable_;
-  double cap_;
+  std::vector<double> caps_;  // [movable]
   std::vector<Pair> pairs_;
 };
 

@@ -132,7 +132,7 @@ TriangleId SurfaceNames::triangle_of(const FeaturePair& pair, bool second) const
     for (const TriangleId s : firsts)
       for (const TriangleId t : seconds)
         if (s != t && !input_.ignored->triangles.excludes(mesh, TrianglePair{s, t})) return second ? t : s;
-  return second ? seconds.front() : firsts.front();
+  return second || firsts.empty() ? seconds.front() : firsts.front();
 }
 
 std::map<NamePair, std::size_t> pairs_by_part(const SurfaceNames& names, const TriangleMesh& mesh,

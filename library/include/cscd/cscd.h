@@ -40,6 +40,8 @@
 //   - up to largest_step() nothing touches, unless something touches or crosses at the start already;
 //   - candidates() holds every pair of features that comes within the radius;
 //   - while no vertex moves farther than its vertex_bounds(), along whatever path, nothing touches.
+// Features are the vertices, edges and faces of the mesh. A vertex of no face is a feature too: a point that
+// touches faces, such as a particle. It takes part in all of this, and true_motion() alone refuses it.
 // With a thickness (Options::thickness) above 0, all of this is about pairs of features that come within it:
 // wherever a comment says "touches" or "contact", the distance of the two is at most the thickness. Then
 //   - is_free() is true only if nothing comes within the thickness and nothing crosses at the start;
@@ -141,7 +143,8 @@ class CSCD_EXPORT SelfCollision {
     // thickness, every question takes the time of a complete search.
     double thickness = 0;
     // More thickness for each vertex, finite and at least 0: a pair has `thickness`, and the sum of the
-    // largest of either feature on top. Empty, or one entry a vertex, of the mesh and then of obstacles.
+    // largest of either feature on top, rounded up where a double does not hold it. Empty, or one entry a
+    // vertex, of the mesh and then of obstacles.
     std::vector<double> vertex_thickness;
   };
 
@@ -275,11 +278,11 @@ class CSCD_EXPORT SelfCollision {
   }
   void all_contacts(const Positions& start, const Positions& end, Answer& out);
 
-  // Returns 1 for a free step, otherwise `safety`, in (0, 1], times the earliest time, rounded down; 0 if
-  // something crosses or touches at the start. A result t above 0 means that nothing touches in [0, t] on
-  // the exact lines. The positions that you store, such as start + t (end - start), are rounded, and may be
-  // off by some units in the last place. Where steps become that short, ask is_free(start, stored), and take
-  // a shorter step if it is not.
+  // Returns 1 for a free step, otherwise `safety`, in (0, 1], times the earliest time, less by at most 2^-40
+  // of it and 2^-48; 0 if something crosses or touches at the start. A result t above 0 means that nothing
+  // touches in [0, t] on the exact lines. The positions that you store, such as start + t (end - start), are
+  // rounded, and may be off by some units in the last place. Where steps become that short, ask
+  // is_free(start, stored), and take a shorter step if it is not.
   double largest_step(const Positions& start, const Positions& end, double safety = 0.9);
 
   // Returns all pairs of a vertex and a face, and of two edges, that share no vertex and come within `radius`
@@ -292,9 +295,9 @@ class CSCD_EXPORT SelfCollision {
   // any direction and along any path, so that no two features that are not excluded come as close as the
   // thickness, however all other vertices move within their bounds. Obstacles stay where they are placed or
   // move as they were told. What moves is the position that is stored: where sums round, leave room for that.
-  // No bound exceeds `cap`, a finite length of at least 0, in which the time grows: pairs within the
-  // thickness and twice the cap are looked at. Vertices of a pair that is not certainly farther apart than
-  // the thickness have the bound 0. From a pose in which nothing crosses, nothing comes to cross.
+  // No bound exceeds `cap`, a finite length of at least 0. Where vertices are far from all others, the time
+  // grows with it. Vertices of a pair that is not certainly farther apart than the thickness have the bound
+  // 0. From a pose in which nothing crosses, nothing comes to cross.
   std::vector<double> vertex_bounds(const Positions& positions, double cap);
 
   // Returns how the mesh crosses itself in a pose, obstacles aside. Overlaps of which half of the pairs of
@@ -331,7 +334,7 @@ class CSCD_EXPORT SelfCollision {
   // acceleration and the error hold: each vertex stays within acceleration (to - from)^2 / 8 of its straight
   // line, the time is halved until that is short, and contacts are closed in on until they are proven or
   // nearer than `resolution`, a length above 0; 0 stands for a hundredth of the mean edge of the reference
-  // positions. For a mesh without obstacles and without a thickness.
+  // positions. For a mesh without obstacles, without a thickness, and without vertices of no face.
   PathsAnswer true_motion(const Paths& paths, double from, double to, double resolution = 0);
 
   // Returns what preparing the mesh has found out, for Options::preparation of another object. Bytes that are
