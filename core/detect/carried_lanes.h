@@ -39,14 +39,14 @@ inline Seen seen(std::span<const Vec3> x, const Triangle& a, const Triangle& b) 
 }
 
 inline Corners::End narrowed(const Seen& seen) {
-  const auto row = [&](std::size_t i) { return __builtin_convertvector(seen[i], Float4); };
+  const auto row = [&](std::size_t i) { return converted<Float4>(seen[i]); };
   const Float8 last = joined<Float8>(row(3), row(4));
   return {joined<Float16>(joined<Float8>(Float4{}, row(0)), joined<Float8>(row(1), row(2))),
           joined<Float16>(last, last)};
 }
 
 inline float largest_of(const Corners::End& end) {
-  return folded(larger_size(end.first, end.last), [](auto x, auto y) { return x < y ? y : x; });
+  return folded(larger_size(end.first, end.last), [](auto x, auto y) { return larger(x, y); });
 }
 
 // The corners at t = 0 and at t = last.

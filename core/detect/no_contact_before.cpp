@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstring>
 
 #include "core/base/rounding.h"
 #include "core/detect/filter_block.h"
@@ -18,7 +17,7 @@ using Rows = std::array<Float4, kLanes16>;  // x, y, z and 0 of each triangle pa
 
 void transpose(const Rows& rows, Float16 (&out)[3]) {
   Float16 four[4];  // four triangle pairs each
-  std::memcpy(four, rows.data(), sizeof four);
+  for (std::size_t i = 0; i < 4; ++i) four[i] = loaded<Float16>(reinterpret_cast<const float*>(&rows[4 * i]));
   const auto both = [](Float16 a, Float16 b) {  // x of eight triangle pairs, then y
     return shuffled<0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29>(a, b);
   };
@@ -41,8 +40,8 @@ PairCorners corners_of(const TriangleMesh& mesh, const Motion& motion, std::span
       const auto at = [&](VertexId v) { return row_of(ends[end][+v]); };
       const Double4 from = at(a[0]);
       for (std::size_t k = 0; k < 3; ++k) {
-        rows[end][k][l] = __builtin_convertvector(at(a[k]) - from, Float4);
-        rows[end][3 + k][l] = __builtin_convertvector(at(b[k]) - from, Float4);
+        rows[end][k][l] = converted<Float4>(at(a[k]) - from);
+        rows[end][3 + k][l] = converted<Float4>(at(b[k]) - from);
       }
     }
   }
@@ -128,7 +127,7 @@ std::array<float, kLanes16> no_contact_before(const TriangleMesh& mesh, const Mo
   }
   take(way);
   std::array<float, kLanes16> out;
-  std::memcpy(out.data(), &before, sizeof before);
+  store(before, out.data());
   return out;
 }
 

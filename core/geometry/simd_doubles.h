@@ -3,9 +3,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#ifdef __AVX2__
-#include <immintrin.h>
-#endif
 
 #include "core/geometry/simd_register.h"
 
@@ -36,17 +33,21 @@ inline Lane8 absolute(Lane8 a) {
 }
 
 inline Lane8 square_root(Lane8 a) {
-#ifdef __AVX512F__
+#if defined(__AVX512F__)
   return _mm512_maskz_sqrt_pd(0xff, a);
 #elif defined(__AVX2__)
-  return {_mm256_sqrt_pd(a.low), _mm256_sqrt_pd(a.high)};
+  return Lane8::each([](auto r) { return _mm256_sqrt_pd(r); }, a);
+#elif defined(__SSE2__)
+  return Lane8::each([](auto r) { return _mm_sqrt_pd(r); }, a);
+#elif defined(CSCD_NEON)
+  return Lane8::each([](auto r) { return vsqrtq_f64(r); }, a);
 #else
   for (std::size_t l = 0; l < kLanes; ++l) a[l] = std::sqrt(a[l]);
   return a;
 #endif
 }
 
-#ifdef __FMA__
+#ifdef __FMA__  // a processor without it would call a function for each number
 // Returns a b + c, rounded once.
 inline double rounded_once(double a, double b, double c) {
   return std::fma(a, b, c);
@@ -55,7 +56,7 @@ inline Lane8 rounded_once(Lane8 a, Lane8 b, Lane8 c) {
 #ifdef __AVX512F__
   return _mm512_maskz_fmadd_pd(0xff, a, b, c);
 #elif defined(__AVX2__)
-  return {_mm256_fmadd_pd(a.low, b.low, c.low), _mm256_fmadd_pd(a.high, b.high, c.high)};
+  return Lane8::each([](auto x, auto y, auto z) { return _mm256_fmadd_pd(x, y, z); }, a, b, c);
 #else
   for (std::size_t l = 0; l < kLanes; ++l) a[l] = std::fma(a[l], b[l], c[l]);
   return a;
@@ -65,13 +66,27 @@ inline Lane8 rounded_once(Lane8 a, Lane8 b, Lane8 c) {
 
 // Returns one bit for each lane: 1 if the lane is not 0.
 inline unsigned bits_of(Sign8 lanes) {
-#ifdef __AVX512F__
+#if defined(__AVX512F__)
   return _mm512_test_epi64_mask(reinterpret_cast<__m512i>(lanes), reinterpret_cast<__m512i>(lanes));
 #elif defined(__AVX2__)
-  const auto half = [](HalfOf<std::int64_t> v) {
+  const auto bits = [](RegisterOf<std::int64_t> v) {
     return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(v != 0)));
   };
-  return half(lanes.low) | half(lanes.high) << 4;
+  return bits(lanes.part[0]) | bits(lanes.part[1]) << 4;
+#elif defined(__SSE2__)
+  // SSE2 compares no integers of 64 bits. A lane is 0 if all its bytes are.
+  const auto zero = [&](int i) {
+    return _mm_cmpeq_epi32(reinterpret_cast<__m128i>(lanes.part[i]), _mm_setzero_si128());
+  };
+  const __m128i words = _mm_packs_epi16(_mm_packs_epi32(zero(0), zero(1)), _mm_packs_epi32(zero(2), zero(3)));
+  const __m128i lanes_of_0 = _mm_cmpeq_epi16(words, _mm_set1_epi16(-1));
+  return ~static_cast<unsigned>(_mm_movemask_epi8(_mm_packs_epi16(lanes_of_0, lanes_of_0))) & 0xff;
+#elif defined(CSCD_NEON)
+  const auto zero = [&](int i) {
+    return vmovn_high_u64(vmovn_u64(vceqzq_s64(lanes.part[i])), vceqzq_s64(lanes.part[i + 1]));
+  };
+  const uint8x8_t lanes_of_0 = vmovn_u16(vmovn_high_u32(vmovn_u32(zero(0)), zero(2)));
+  return static_cast<unsigned>(vaddv_u8(vand_u8(vmvn_u8(lanes_of_0), vcreate_u8(0x8040201008040201U))));
 #else
   unsigned bits = 0;
   for (std::size_t l = 0; l < kLanes; ++l) bits |= static_cast<unsigned>(lanes[l] != 0) << l;

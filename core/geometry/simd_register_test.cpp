@@ -4,10 +4,10 @@
 #include <random>
 
 #include "core/geometry/simd_doubles.h"
-#include "core/geometry/simd_halves.h"
+#include "core/geometry/simd_registers.h"
 #include "core/geometry/simd_shorts.h"
 
-// Compares Halves, and the vector type that this machine uses, with single numbers.
+// Compares several registers of each size, and what this machine uses, with single numbers.
 namespace cscd {
 
 namespace {
@@ -60,8 +60,15 @@ class Vectors : public testing::Test {
   Vector a_, b_;
 };
 
-using Types = testing::Types<Halves<float>, Halves<double>, Halves<std::int16_t>, Halves<std::int32_t>,
-                             Halves<std::int64_t>, Float16, Lane8, Short32, Int16, Sign8>;
+template <class Number>
+using Two = Registers<Number, 64, 32>;
+template <class Number>
+using Four = Registers<Number, 64, 16>;
+
+using Types = testing::Types<Two<float>, Two<double>, Two<std::int16_t>, Two<std::int32_t>, Two<std::int64_t>,
+                             Four<float>, Four<double>, Four<std::int16_t>, Four<std::int32_t>,
+                             Four<std::int64_t>, Registers<float, 32, 16>, Float16, Lane8, Short32, Int16,
+                             Sign8, HalfOf<float>, HalfOf<std::uint16_t>>;
 TYPED_TEST_SUITE(Vectors, Types);
 
 TYPED_TEST(Vectors, WorkLaneByLane) {
@@ -130,13 +137,18 @@ TYPED_TEST(Vectors, KeepAndConvertTheirNumbers) {
   for (std::size_t l = 0; l < this->kCount; ++l) copy[l] = this->a_[l];
   this->expect(copy, [](Number x, Number) { return x; });
   if constexpr (std::is_same_v<Number, std::int32_t>) {
-    using Floats = std::conditional_t<InHalves<TypeParam>, Halves<float>, Float16>;
+    using Floats =
+        std::conditional_t<std::is_same_v<TypeParam, Two<Number>>, Two<float>,
+                           std::conditional_t<std::is_same_v<TypeParam, Four<Number>>, Four<float>, Float16>>;
     this->expect(converted<Floats>(this->a_), [](Number x, Number) { return static_cast<float>(x); });
     this->expect(bits_as<Floats>(this->a_), [](Number x, Number) { return std::bit_cast<float>(x); });
   }
   if constexpr (std::is_same_v<Number, double>) {
     const TypeParam finite = select(this->a_ - this->a_ == Number{0}, this->a_ / 3, TypeParam{});
-    const auto narrow = converted<HalfOf<float>>(finite);
+    using Narrow = std::conditional_t<std::is_same_v<TypeParam, Lane8>, HalfOf<float>,
+                                      std::conditional_t<std::is_same_v<TypeParam, Four<Number>>,
+                                                         Registers<float, 32, 16>, VectorOf<float, 32>>>;
+    const auto narrow = converted<Narrow>(finite);
     const TypeParam back = converted<TypeParam>(narrow);
     for (std::size_t l = 0; l < this->kCount; ++l) {
       ASSERT_EQ(narrow[l], static_cast<float>(finite[l]));
@@ -145,9 +157,8 @@ TYPED_TEST(Vectors, KeepAndConvertTheirNumbers) {
   }
 }
 
-// The shuffles take from one half, from two halves of both operands or of one,
-// and from three and four halves.
-TEST(Shuffles, TakeFromAnyHalves) {
+// The shuffles take from one register, from two of both operands or of one, and from three and four.
+TEST(Shuffles, TakeFromAnyRegisters) {
   const auto expect = []<int... kFrom>(std::integer_sequence<int, kFrom...>, auto a, auto b) {
     constexpr int kCount = sizeof...(kFrom);
     for (int l = 0; l < kCount; ++l) a[l] = static_cast<float>(l), b[l] = static_cast<float>(kCount + l);
@@ -157,7 +168,8 @@ TEST(Shuffles, TakeFromAnyHalves) {
   };
   const auto both = [&]<int... kFrom>(std::integer_sequence<int, kFrom...> from) {
     expect(from, Float16{}, Float16{});
-    expect(from, Halves<float>{}, Halves<float>{});
+    expect(from, Two<float>{}, Two<float>{});
+    expect(from, Four<float>{}, Four<float>{});
   };
   both(std::integer_sequence<int, 8, 9, 10, 11, 12, 13, 14, 15, 0, 1, 2, 3, 4, 5, 6, 7>{});
   both(std::integer_sequence<int, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29>{});
@@ -175,6 +187,30 @@ TEST(Lanes16, PermutedTakesAnyLane) {
     const Float16 out = permuted(v, place);
     for (std::size_t l = 0; l < kLanes16; ++l) ASSERT_TRUE(same<float>(out[l], v[place[l]])) << l;
   }
+}
+
+TEST(Lanes16, PointsAreTakenWhole) {
+  std::mt19937 random(2014);
+  const Float16 axis[3] = {drawn<Float16>(random), drawn<Float16>(random), drawn<Float16>(random)};
+  const Points16 points(axis);
+  Places16 place;
+  for (std::uint8_t& p : place) p = static_cast<std::uint8_t>(random() % kLanes16);
+  Float16 out[3];
+  points.take(place, out);
+  for (int i = 0; i < 3; ++i)
+    for (std::size_t l = 0; l < kLanes16; ++l)
+      ASSERT_TRUE(same<float>(out[i][l], axis[i][place[l]])) << i << " " << l;
+}
+
+TEST(Lanes, AreLoadedAndStoredInOrder) {
+  std::array<float, kLanes16> numbers, back;
+  for (std::size_t l = 0; l < kLanes16; ++l) numbers[l] = static_cast<float>(l);
+  const auto v = loaded<Float16>(numbers.data());
+  for (std::size_t l = 0; l < kLanes16; ++l) ASSERT_EQ(v[l], numbers[l]);
+  store(v, back.data());
+  EXPECT_EQ(back, numbers);
+  const auto high = half_of<Float8, 1>(v);
+  for (std::size_t l = 0; l < 8; ++l) ASSERT_EQ(high[l], numbers[8 + l]);
 }
 
 // Every lane takes part once: a sum of sixteen powers of two shows which.

@@ -3,9 +3,6 @@
 #include <cstdint>
 #include <cstring>
 #include <utility>
-#ifdef __AVX2__
-#include <immintrin.h>
-#endif
 
 #include "core/geometry/simd_floats.h"
 
@@ -18,15 +15,29 @@ using Mask32 = std::uint32_t;
 
 // Returns the lanes in which a > b.
 inline Mask32 above(Short32 a, Short32 b) {
-#ifdef __AVX512BW__
+#if defined(__AVX512BW__)
   return _mm512_cmpgt_epi16_mask(reinterpret_cast<__m512i>(a), reinterpret_cast<__m512i>(b));
 #elif defined(__AVX2__) && !defined(__AVX512F__)
   const auto lanes = a > b;
-  // The instruction packs quarters of both halves in turn; the permutation puts
+  // The instruction packs quarters of both registers in turn; the permutation puts
   // them into the order of the lanes.
   const __m256i bytes =
-      _mm256_packs_epi16(reinterpret_cast<__m256i>(lanes.low), reinterpret_cast<__m256i>(lanes.high));
+      _mm256_packs_epi16(reinterpret_cast<__m256i>(lanes.part[0]), reinterpret_cast<__m256i>(lanes.part[1]));
   return static_cast<Mask32>(_mm256_movemask_epi8(_mm256_permute4x64_epi64(bytes, 0b11011000)));
+#elif defined(__SSE2__) && !defined(__AVX512F__)
+  const auto lanes = a > b;
+  const auto bits = [&](int i) {
+    return static_cast<Mask32>(_mm_movemask_epi8(_mm_packs_epi16(
+        reinterpret_cast<__m128i>(lanes.part[i]), reinterpret_cast<__m128i>(lanes.part[i + 1]))));
+  };
+  return bits(0) | bits(2) << 16;
+#elif defined(CSCD_NEON)
+  const auto lanes = a > b;
+  const auto bits = [&](int i) {
+    return static_cast<Mask32>(
+        bits_of_bytes(vreinterpretq_u8_s8(vmovn_high_s16(vmovn_s16(lanes.part[i]), lanes.part[i + 1]))));
+  };
+  return bits(0) | bits(2) << 16;
 #else
   const auto lanes = a > b;
   Mask32 bits = 0;

@@ -38,17 +38,12 @@ Float8 rounded_down(const Exact8& x) {
   const Lane8 infinity = Lane8{} + std::numeric_limits<double>::infinity();
   const Sign8 above = (widened > x.value) | ((widened == x.value) & (x.error < 0)) | (x.value == infinity);
 
-  Bits8 bits;
-  static_assert(sizeof bits == sizeof nearest);
-  __builtin_memcpy(&bits, &nearest, sizeof bits);
+  const Bits8 bits = bits_as<Bits8>(nearest);
   const Bits8 smallest_negative = Bits8{} + 0x80000001u;
-  const Bits8 stepped = nearest == 0 ? smallest_negative : nearest > 0 ? bits - 1 : bits + 1;
+  const Bits8 stepped = select(nearest == 0, smallest_negative, select(nearest > 0, bits - 1, bits + 1));
   const Float8 lowest = Float8{} - std::numeric_limits<float>::infinity();
   const Mask8 steps = converted<Mask8>(above) & (nearest != lowest);
-  const Bits8 chosen = steps ? stepped : bits;
-  Float8 out;
-  __builtin_memcpy(&out, &chosen, sizeof out);
-  return out;
+  return bits_as<Float8>(select(steps, stepped, bits));
 }
 
 struct Position8 {

@@ -50,7 +50,7 @@ float least_height(Float16 area, const PatchLanes& a, const PatchLanes& b, Float
   take([&](std::size_t end, std::size_t i) { return b.at[end][i]; });
   take([&](std::size_t end, std::size_t i) { return b.at[end][i] - a.at[end][i]; });
   const Float16 heights = area / (kRoundUp * square_root(longest) + off);
-  return kRoundDown * folded(heights, [](auto x, auto y) { return x < y ? x : y; });
+  return kRoundDown * folded(heights, [](auto x, auto y) { return smaller(x, y); });
 }
 
 // For rings that are repeated over all lanes: the lane of the vertex after each, by the length of the ring.

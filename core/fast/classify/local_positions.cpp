@@ -91,14 +91,11 @@ std::int32_t LocalPositions::convert(const Motion& motion, std::size_t first, st
   const Lane8 scale = {scale_, scale_, scale_, 0, scale_, scale_, scale_, 0};
   Int8 most = {};
   const auto convert = [&](const double* start, const double* end, float* out) {
-    HalfOf<double> p, q;
-    std::memcpy(&p, start, sizeof p);
-    std::memcpy(&q, end, sizeof q);
+    const auto p = loaded<HalfOf<double>>(start), q = loaded<HalfOf<double>>(end);
     const Lane8 both = joined<Lane8>(p, HalfOf<double>(at(p, q)));
     const Float8 f = converted<Float8>((both - origin) * scale);
-    std::memcpy(out, &f, sizeof f);
-    const Int8 size = reinterpret_cast<Int8>(f) & 0x7fffffff;
-    most = size > most ? size : most;
+    store(f, out);
+    most = larger(most, Int8(bits_as<Int8>(f) & 0x7fffffff));
   };
   const double *start = motion.start()[0].data(), *end = motion.end()[0].data();
   Record* const records = records_.data();

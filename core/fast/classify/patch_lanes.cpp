@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include "core/geometry/simd_floats.h"
 
@@ -19,9 +18,7 @@ float reach_of(const Viewpoint& viewpoint, float error) {
 Viewpoint placed(const FollowingPoint& point, std::span<const LocalPositions::Record> records) {
   Float8 sum = {};
   for (std::size_t i = 0; i < point.vertices().size(); ++i) {
-    Float8 record;
-    std::memcpy(&record, records[+point.vertices()[i]].at, sizeof record);
-    sum += point.weights()[i] * record;
+    sum += point.weights()[i] * loaded<Float8>(records[+point.vertices()[i]].at);
   }
   Viewpoint out;
   for (std::size_t end = 0; end < 2; ++end)
@@ -41,13 +38,19 @@ Viewpoint placed(const FollowingPoint& point, std::span<const LocalPositions::Re
 
 namespace {
 
-// Results are written in place, register by register. gcc copies a struct of registers by halves, and loading
-// a whole register waits long for the two stores.
-[[gnu::always_inline]] inline void corner_of(const PatchLanes& lanes, const Places16& place,
-                                             PatchLanes& out) {
-  for (int end = 0; end < 2; ++end)
-    for (int i = 0; i < 3; ++i) out.at[end][i] = permuted(lanes.at[end][i], place);
-}
+// The corners of a patch's triangles. Results are written in place, register by register: gcc copies a struct
+// of registers by halves, and loading a whole register waits long for the two stores.
+class Corners {
+ public:
+  explicit Corners(const PatchLanes& lanes) : start_(lanes.at[0]), end_(lanes.at[1]) {}
+  [[gnu::always_inline]] void take(const Places16& place, PatchLanes& out) const {
+    start_.take(place, out.at[0]);
+    end_.take(place, out.at[1]);
+  }
+
+ private:
+  Points16 start_, end_;
+};
 
 [[gnu::always_inline]] inline void subtract(PatchLanes& to, const PatchLanes& from) {
   for (int end = 0; end < 2; ++end)
@@ -64,11 +67,10 @@ PatchLanes load(std::span<const LocalPositions::Record> records,
   for (std::size_t h = 0; h < 2; ++h) {
     Float16 row[4];
     for (std::size_t i = 0; i < 4; ++i) {
-      Float8 record[2];
-      for (std::size_t k = 0; k < 2; ++k)
-        std::memcpy(&record[k], records[static_cast<std::size_t>(vertex[8 * h + 4 * k + i])].at,
-                    sizeof record[k]);
-      row[i] = joined<Float16>(record[0], record[1]);
+      const auto record = [&](std::size_t place) {
+        return loaded<Float8>(records[static_cast<std::size_t>(vertex[place])].at);
+      };
+      row[i] = joined<Float16>(record(8 * h + i), record(8 * h + 4 + i));
     }
     const auto first_two = [](Float16 a, Float16 b) {
       return shuffled<0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29>(a, b);
@@ -107,9 +109,10 @@ struct PatchNormals {
 [[gnu::always_inline]] inline void make_normals(const PatchLanes& lanes, const Patch& patch,
                                                 PatchNormals& out, PatchLanes& corner) {
   PatchLanes a, b;
-  corner_of(lanes, patch.corner[0], corner);
-  corner_of(lanes, patch.corner[1], a);
-  corner_of(lanes, patch.corner[2], b);
+  const Corners corners(lanes);
+  corners.take(patch.corner[0], corner);
+  corners.take(patch.corner[1], a);
+  corners.take(patch.corner[2], b);
   subtract(a, corner);
   subtract(b, corner);
   cross(a, b, out.control);
@@ -174,9 +177,10 @@ void orientations_at_distance(const PatchLanes& lanes, const Patch& patch,
                               const Viewpoint* const (&from)[kCovers], float error, float margin,
                               float height, DistantSigns& out) {
   PatchLanes corner, a, b;
-  corner_of(lanes, patch.corner[0], corner);
-  corner_of(lanes, patch.corner[1], a);
-  corner_of(lanes, patch.corner[2], b);
+  const Corners corners(lanes);
+  corners.take(patch.corner[0], corner);
+  corners.take(patch.corner[1], a);
+  corners.take(patch.corner[2], b);
   subtract(a, corner);
   subtract(b, corner);
   Float16 control[3][3];

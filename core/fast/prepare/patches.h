@@ -44,23 +44,23 @@ struct SharedVertices {
 
   // Returns the triangles of the other patch that have one of the vertices at some places. All places are
   // treated at once, because no processor foresees which of them are asked for.
-  Mask16 lanes(Mask16 places) const { return any_of(((Rows{} + places) & kPlace) != 0 ? rows() : Rows{}); }
+  Mask16 lanes(Mask16 places) const {
+    return any_of(select(((Rows{} + places) & kPlace) != 0, rows(), Rows{}));
+  }
   // Returns the places of the vertices that some triangles of the other patch have.
-  Mask16 places(Mask16 lanes) const { return any_of((rows() & lanes) != 0 ? kPlace : Rows{}); }
+  Mask16 places(Mask16 lanes) const { return any_of(select((rows() & lanes) != 0, kPlace, Rows{})); }
 
  private:
-  using Rows = Mask16 __attribute__((vector_size(2 * kLanes16)));
+  using Rows = HalfOf<Mask16>;
   static constexpr Rows kPlace = {1,      1 << 1, 1 << 2,  1 << 3,  1 << 4,  1 << 5,  1 << 6,  1 << 7,
                                   1 << 8, 1 << 9, 1 << 10, 1 << 11, 1 << 12, 1 << 13, 1 << 14, 1 << 15};
-  Rows rows() const {
-    Rows rows;
-    std::memcpy(&rows, at.data(), sizeof rows);
-    return rows;
-  }
-  static Mask16 any_of(Rows rows) {
-    std::uint64_t fours[4];
-    std::memcpy(fours, &rows, sizeof fours);
-    std::uint64_t any = (fours[0] | fours[1]) | (fours[2] | fours[3]);
+  Rows rows() const { return loaded<Rows>(at.data()); }
+  static Mask16 any_of(const Rows& rows) {
+    using Eight = VectorOf<Mask16, 16>;
+    const Eight eight = half_of<Eight, 0>(rows) | half_of<Eight, 1>(rows);
+    std::uint64_t fours[2];
+    std::memcpy(fours, &eight, sizeof fours);
+    std::uint64_t any = fours[0] | fours[1];
     any |= any >> 32;
     return static_cast<Mask16>(any | any >> 16);
   }
