@@ -42,7 +42,7 @@ variants=("g++ -O0")
 [ -z "$clang" ] || variants+=("clang++ -O3 -march=native")
 if [ -n "$all" ] || [ -z "$clang" ]; then variants+=("g++ -O3 -march=native"); fi
 if [ -n "$all" ] && [ -n "$clang" ]; then variants+=("clang++ -O2"); fi
-# Halves of registers, where the machine's own instructions have no need of them.
+# Registers of 32 bytes, where the machine has larger ones.
 if grep -qw avx512f /proc/cpuinfo; then variants+=("g++ -O2 -march=x86-64-v3"); fi
 failed=0 first=""
 for variant in "${variants[@]}"; do
