@@ -78,7 +78,7 @@ TEST(ImportReport, RefusesWhatIsNotWhole) {
 TEST(ImportOptions, SurviveTheCommandLine) {
   ImportOptions options;
   EXPECT_EQ(parse_arguments(to_arguments(options)), options);
-  options = {"a clip", 7, 23.976, true, "largest", 12, true, 0.1 / 3e4, true, "motion"};
+  options = {"a clip", 7, 23.976, true, "largest", 12, true, 0.1 / 3e4, true, true, "motion"};
   EXPECT_EQ(parse_arguments(to_arguments(options)), options);
 }
 
