@@ -24,6 +24,7 @@ part() {
 }
 part rows core/elementary/{additive,cubic,inclusion,newton,catalogue} scenes/queries/query_file
 part filtered core/elementary/certified/{close_doubles,filtered_exact,integer_roots,integer_signs,integer_contact}
+part ties core/elementary/certified/close_integers
 part lanes core/elementary/certified/exact_lanes
 part single core/detect/single_filter
 part distance core/detect/distance_filter
@@ -33,7 +34,7 @@ part meshes core/detect/{double_filter,carried_pairs,compose,contact,feature_own
   core/mesh/triangle_mesh core/geometry/feature_distance
 part team core/base/team
 part exclusions core/detect/exclusions
-part bounds core/hierarchy/{bounds,scalar_bounds,tree,vertex_bounds}
+part bounds core/hierarchy/{bounds,loose_vertices,scalar_bounds,tree,vertex_bounds}
 part plain core/detect/plain_sign
 part digest scripts/lib/check/digest
 
