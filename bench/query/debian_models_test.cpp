@@ -75,7 +75,8 @@ TEST_P(DebianModels, AreAnsweredAsKnown) {
             known.collides);
   // A strategy that needs a closed surface refuses an open one. What takes the surface answers as the others
   // do.
-  const std::vector<std::string> fast{"query", file, "--clip", "0", "--strategy", "drvbc_fast"};
+  const std::vector<std::string> fast{"query",       file,   "--clip",     "0",
+                                      "--component", "auto", "--strategy", "drvbc_fast"};
   if (!known.closed) {
     const std::string text = refusal(fast);
     EXPECT_NE(text.find("boundary edges"), std::string::npos) << text;

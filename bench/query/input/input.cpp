@@ -1,5 +1,6 @@
 #include "bench/query/input/input.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -88,9 +89,14 @@ std::string short_name(const std::string& name) {
 
 bool is_model_file(const std::string& name) {
   const std::filesystem::path path(name);
+  if (is_point_cache(path) || scenes::is_scene_file(path)) return false;
+  if (path.has_extension()) return true;
   std::error_code ignored;
-  return !is_point_cache(path) && !scenes::is_scene_file(path) &&
-         (path.has_extension() || std::filesystem::exists(path, ignored));
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  // A folder is an input, too, but one that is called like a scene, as a folder `man` of manual pages is,
+  // does not hide that scene: ./man names the folder.
+  if (!std::filesystem::is_directory(status)) return std::filesystem::exists(status);
+  return std::ranges::count(scenes::all_scene_names(), name) == 0;
 }
 
 Input open_input(const std::string& name, const ModelOptions& options) {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"
 
 namespace cscd::bench {
@@ -20,6 +21,19 @@ TEST(NameInput, LetsFaultsOfAnInputBeginWithItsName) {
   EXPECT_EQ(said("no frame moves it"), "walk.fbx: no frame moves it");
   EXPECT_EQ(said("cannot read walk.fbx"), "cannot read walk.fbx");
   EXPECT_THROW(name_input("walk.fbx", [] { throw std::logic_error("a fault of ours"); }), std::logic_error);
+}
+
+// A folder is an input, but it hides no scene. Mutation: it does.
+TEST(ModelFile, IsNoFolderThatIsCalledLikeAScene) {
+  const test::Folder scratch;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(scratch.path);
+  std::filesystem::create_directory("man");
+  std::filesystem::create_directory("frames");
+  EXPECT_FALSE(is_model_file("man"));
+  EXPECT_TRUE(is_model_file("./man"));
+  EXPECT_TRUE(is_model_file("frames"));
+  std::filesystem::current_path(before);
 }
 
 TEST(ShortName, IsTheLastPartOfAPath) {
