@@ -149,6 +149,65 @@ TEST_F(Collada, IndicesThatDoNotExistAreRefused) {
   EXPECT_TRUE(says(refusal_of(replaced(kColladaFile, ">0 0.5<", ">0.5 0.5<")), "the time of key 1"));
 }
 
+// assimp drops channels whose target it does not find without a word.
+TEST_F(Collada, ChannelsMoveWhatExistsOrAreRefused) {
+  const auto to = [](const std::string& target) {
+    return replaced(kColladaFile, "target=\"high/transform\"", "target=\"" + target + "\"");
+  };
+  for (const std::string id : {"hihg", "High", " high", "."})
+    EXPECT_TRUE(says(refusal_of(to(id + "/transform")),
+                     "channel '" + id + "/transform': no element of the file has the id '" + id + "'"));
+  for (const std::string sid : {"Transform", "matrix", ""})
+    EXPECT_TRUE(says(refusal_of(to("high/" + sid)),
+                     "channel 'high/" + sid + "': node 'high' has no transform with the sid '" + sid + "'"));
+  EXPECT_TRUE(says(refusal_of(to("high")), "has no transform"));
+  EXPECT_TRUE(says(refusal_of(to("pa(0)")), "channel 'pa(0)': moves a geometry itself"));
+  EXPECT_TRUE(says(refusal_of(to("wa(0)")), "channel 'wa(0)': moves a controller itself"));
+  EXPECT_TRUE(says(refusal_of(replaced(replaced(to("h.i.gh/transform"), "id=\"high\"", "id=\"h.i.gh\""),
+                                       "low high", "low h.i.gh")),
+                   "channel 'h.i.gh/transform': points and brackets in the id"));
+  // What has no bearing on positions gets a note.
+  const std::string second = R"(<channel source="#s" target="TARGET"/></animation>)";
+  const std::string eye = "<library_cameras><camera id=\"eye\"/></library_cameras><library_visual_scenes>";
+  std::string text = replaced(kColladaFile, "</animation>", replaced(second, "TARGET", "eye/xfov"));
+  text = replaced(text, "</animation>", replaced(second, "TARGET", "low/visibility"));
+  text = replaced(text, "<library_visual_scenes>", eye);
+  text = replaced(text, "<node id=\"high\"",
+                  "<extra><technique><visibility sid=\"visibility\">1</visibility></technique></extra>"
+                  "<node id=\"high\"");
+  EXPECT_EQ(ends_of(text), ends_of(kColladaFile));
+  EXPECT_EQ(read_model(write("eye.dae", text), {}).notes,
+            std::vector<std::string>{"2 animation channels move no node of the scene and are ignored"});
+}
+
+TEST_F(Collada, VerticesWithoutWeightsOrFacesAreCounted) {
+  const auto notes_of = [&](const std::string& text) {
+    return read_model(write("flag.dae", text), {}).notes;
+  };
+  const std::string one = "<v>0 0 0 0 1 0 1 0</v>", vcount = "<vcount>1 1 1 1</vcount>";
+  const std::string follow =
+      " vertices of skins have no weight above 0: they follow the node of their mesh, without its bind shape";
+  EXPECT_EQ(notes_of(kColladaFile), std::vector<std::string>{});
+  EXPECT_EQ(notes_of(replaced(replaced(kColladaFile, vcount, "<vcount>1 0 2 0</vcount>"), one,
+                              "<v>0 0 1 0 0 0</v>")),
+            std::vector<std::string>{"2" + follow});
+  const auto weight = [&](const std::string& by) {
+    return replaced(kColladaFile, R"(<float_array id="wa" count="1">1<)",
+                    R"(<float_array id="wa" count="1">)" + by + "<");
+  };
+  EXPECT_EQ(notes_of(weight("0")), std::vector<std::string>{"4" + follow});
+  EXPECT_TRUE(says(refusal_of(weight("-1")),
+                   "<controller> 'skin': entry 1 of <v> (counted from 0) names weight 0, which is negative"));
+  EXPECT_TRUE(says(refusal_of(replaced(kColladaFile, ">low high<", ">low hihg<")),
+                   "bone 'hihg': has weights, and no node has this name"));
+  // A joint without weights needs no node.
+  EXPECT_EQ(
+      refusal_of(replaced(replaced(kColladaFile, ">low high<", ">low hihg<"), one, "<v>0 0 0 0 0 0 0 0</v>")),
+      "");
+  EXPECT_EQ(notes_of(replaced(kColladaFile, "0 1 2 0 2 3", "0 1 2 0 2 1")),
+            std::vector<std::string>{"1 vertex is of no face and is left out: no answer is about it"});
+}
+
 TEST_F(Collada, RefusesByNameWhatAssimpReadsWrongly) {
   const std::string morph =
       R"(<library_controllers><controller id="smile"><morph source="#flag"><targets/></morph></controller>)";

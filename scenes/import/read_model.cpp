@@ -23,6 +23,7 @@
 #include "scenes/import/fbx/read_fbx.h"
 #include "scenes/import/file_system.h"
 #include "scenes/import/gltf/read_gltf.h"
+#include "scenes/import/surface.h"
 #include "scenes/import/x_text.h"
 #include "scenes/polygon/cut_polygon.h"
 
@@ -83,7 +84,8 @@ Transform transform(const aiMatrix4x4& m) {
 
 class Reader {
  public:
-  Reader(const aiScene& scene, const CharacterLimits& limits) : scene_(scene), limits_(limits) {}
+  Reader(const aiScene& scene, const Format& format, const CharacterLimits& limits)
+      : scene_(scene), bones_have_nodes_(format.name == "Collada"), limits_(limits) {}
 
   Character read() {
     if (scene_.mRootNode == nullptr) throw InputError("has no nodes; export it again");
@@ -183,6 +185,10 @@ class Reader {
       require_one(text(bone.mName), "bone");
       const auto found = by_name_.find(text(bone.mName));
       if (found == by_name_.end()) {
+        // DirectX files of real exporters have such bones, so those get a note.
+        if (bones_have_nodes_ && bone.mNumWeights > 0)
+          throw InputError("bone '" + text(bone.mName) +
+                           "': has weights, and no node has this name; repair it or export the file again");
         many_ += bone.mNumWeights;
         continue;
       }
@@ -268,6 +274,7 @@ class Reader {
   }
 
   const aiScene& scene_;
+  const bool bones_have_nodes_;
   const CharacterLimits& limits_;
   Character character_;
   std::vector<const aiNode*> source_;    // [nodes]
@@ -300,6 +307,7 @@ struct CheckedFile {
 CheckedFile checked_file(const Format& format, std::string bytes) {
   if (format.name == "Collada") {
     CheckedCollada checked = checked_collada(bytes);
+    if (checked.loose_vertices > 0) checked.notes.push_back(note_on_loose_vertices(checked.loose_vertices));
     return {std::move(checked.xml), std::move(checked.notes)};
   }
   if (format.name == "DirectX X") return {std::string(checked_x(bytes)), {}};
@@ -331,7 +339,7 @@ Character read_model(const std::filesystem::path& path, const CharacterLimits& l
   if (scene == nullptr)
     throw InputError(std::string("the ") + std::string(format.name) +
                      " importer refuses it: " + std::string(error) + "; export it again");
-  Character character = Reader(*scene, limits).read();
+  Character character = Reader(*scene, format, limits).read();
   character.format = format.name;
   if (format.name == "Collada") character.up = "y";  // to which assimp turns what the file calls up
   character.notes.insert(character.notes.end(), file.notes.begin(), file.notes.end());

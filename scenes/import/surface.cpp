@@ -119,15 +119,18 @@ ChosenSurface choose(const WeldedTriangles& surface, std::size_t raw_vertices, c
 
 }  // namespace
 
-std::string note_on_loose_vertices(std::size_t vertices, std::span<const RawTriangle> triangles) {
-  std::vector<bool> used(vertices, false);
-  for (const RawTriangle& t : triangles)
-    for (const std::int32_t corner : t) used[static_cast<std::size_t>(corner)] = true;
-  const auto loose = std::ranges::count(used, false);
+std::string note_on_loose_vertices(std::size_t loose) {
   if (loose == 0) return "";
   return std::to_string(loose) +
          (loose == 1 ? " vertex is of no face and is" : " vertices are of no face and are") +
          " left out: no answer is about " + (loose == 1 ? "it" : "them");
+}
+
+std::string note_on_loose_vertices(std::size_t vertices, std::span<const RawTriangle> triangles) {
+  std::vector<bool> used(vertices, false);
+  for (const RawTriangle& t : triangles)
+    for (const std::int32_t corner : t) used[static_cast<std::size_t>(corner)] = true;
+  return note_on_loose_vertices(static_cast<std::size_t>(std::ranges::count(used, false)));
 }
 
 RawSurface raw_surface(const Character& character) {

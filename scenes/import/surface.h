@@ -44,6 +44,7 @@ struct ChosenSurface {
 
 // Says how many vertices of a file are of no face. They are left out of imported surfaces, because files
 // hold many that mean nothing. Empty where every vertex is of a face.
+std::string note_on_loose_vertices(std::size_t loose);
 std::string note_on_loose_vertices(std::size_t vertices, std::span<const RawTriangle> triangles);
 
 // Welds the raw surface, fills holes, turns components that face inward and chooses components, all as the

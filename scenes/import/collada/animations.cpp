@@ -28,6 +28,10 @@ bool is_known_member(std::string_view member) {
          member[5] == ')';
 }
 
+std::string told_channel(pugi::xml_node channel) {
+  return "animation channel '" + std::string(channel.attribute("target").value()) + "'";
+}
+
 // The numbers of a sampler's keys.
 struct Keys {
   std::vector<double> times, outputs, leaving, arriving;
@@ -50,17 +54,28 @@ class Animations {
       }
   }
 
-  std::vector<std::string> notes_on_keys() const {
+  std::vector<std::string> notes_on_channels() const {
     std::size_t dense = 0;
+    std::vector<pugi::xml_node> others;
     for (const pugi::xml_node library : document_.root().children("library_animations"))
       walk(library, [&](pugi::xml_node element) {
-        if (element.name() == std::string_view("channel")) dense += check_channel(element);
+        if (element.name() != std::string_view("channel")) return;
+        if (moves_node(element))
+          dense += check_channel(element);
+        else
+          others.push_back(element);
       });
-    if (dense == 0) return {};
-    return {
-        std::to_string(dense) +
-        " animation channels of keys joined by curves or steps are read as straight lines; their keys are at "
-        "most 1/60 s apart"};
+    std::vector<std::string> notes;
+    if (dense > 0)
+      notes.push_back(std::to_string(dense) +
+                      " animation channels of keys joined by curves or steps are read as straight lines; "
+                      "their keys are at most 1/60 s apart");
+    // assimp takes some of them for channels of nodes whose ids are alike.
+    for (pugi::xml_node channel : others) channel.parent().remove_child(channel);
+    if (!others.empty())
+      notes.push_back(std::to_string(others.size()) +
+                      " animation channels move no node of the scene and are ignored");
+    return notes;
   }
 
  private:
@@ -73,7 +88,10 @@ class Animations {
       ++named_[id];
       if (name != id) ++named_[name];
       ++by_sid_[sid];
-      if (!id.empty()) ++nodes_[id];
+      if (id.empty()) return;
+      Node& node = nodes_[id];
+      ++node.count;
+      node.element = element;
     };
     const std::string scene = document_.scene().attribute("id").value();
     for (const pugi::xml_node library : document_.root().children("library_visual_scenes"))
@@ -89,21 +107,66 @@ class Animations {
     return named > 0 ? named : counted(by_sid_, joint);
   }
 
-  // Tells whether the channel moves a node by dense keys that are joined by other than straight lines.
-  bool check_channel(pugi::xml_node channel) const {
-    const std::string target = channel.attribute("target").value(),
-                      where = "animation channel '" + target + "'";
+  // Tells whether the channel moves a node of the scene. assimp drops all others without a word, so what
+  // they name has to exist and to have no bearing on positions, as a camera has none.
+  bool moves_node(pugi::xml_node channel) const {
+    const std::string target = channel.attribute("target").value(), where = told_channel(channel);
     const std::size_t slash = target.find('/');
-    const std::string node = target.substr(0, slash);
-    const std::size_t nodes = counted(nodes_, node);
-    if (nodes == 0) return false;
-    if (nodes > 1)
-      throw InputError("animated node '" + node + "': several nodes have this id; rename all but one");
-    const std::string_view transform = slash == target.npos ? "" : std::string_view(target).substr(slash + 1);
-    const std::size_t member = std::min(transform.find_first_of(".("), transform.size());
-    if (transform.find('/') != transform.npos || !is_known_member(transform.substr(member)))
+    const std::string id = target.substr(0, slash);
+    const auto found = nodes_.find(id);
+    if (found == nodes_.end()) {
+      // Without a slash, a member such as (0) follows the id.
+      const pugi::xml_node other =
+          document_.target_of(slash == target.npos ? id.substr(0, id.find('(')) : id);
+      if (id.empty() || !other)
+        throw InputError(where + ": no element of the file has the id '" + id +
+                         "'; repair it or export the file again");
+      for (pugi::xml_node above = other; above; above = above.parent())
+        if (above.name() == std::string_view("geometry") || above.name() == std::string_view("controller"))
+          throw InputError(where + ": moves a " + above.name() +
+                           " itself, which is not read; bake the animation on export");
+      return false;
+    }
+    if (found->second.count > 1)
+      throw InputError("animated node '" + id + "': several nodes have this id; rename all but one");
+    const std::string_view moved = slash == target.npos ? "" : std::string_view(target).substr(slash + 1);
+    const std::size_t member = std::min(moved.find_first_of(".("), moved.size());
+    const std::string sid(moved.substr(0, member));
+    if (sid.empty() || sid.find('/') == sid.npos) {
+      const Moved what = sid.empty() ? Moved::nothing : moved_in(found->second.element, sid);
+      if (what == Moved::nothing)
+        throw InputError(where + ": node '" + id + "' has no transform with the sid '" + sid +
+                         "'; repair it or export the file again");
+      if (what == Moved::other) return false;
+    }
+    if (moved.find('/') != moved.npos || !is_known_member(moved.substr(member)))
       throw InputError(where +
                        ": moves a part of a transform that is not read; bake the animation on export");
+    // assimp looks for members from the front of the whole target.
+    if (id.find('(') != id.npos || std::ranges::count(target, '.') > 1)
+      throw InputError(where + ": points and brackets in the id of the node hide what is moved; rename it");
+    return true;
+  }
+
+  enum class Moved { nothing, transform, other };
+
+  // What a node itself has under a scoped id: a transform, or something else, such as its visibility.
+  static Moved moved_in(pugi::xml_node node, const std::string& sid) {
+    Moved what = Moved::nothing;
+    for (const pugi::xml_node child : node.children()) {
+      if (child.name() == std::string_view("node")) continue;
+      if (child.attribute("sid").value() == sid && numbers_of_transform(child.name()) > 0)
+        return Moved::transform;
+      bool has = child.attribute("sid").value() == sid;
+      walk(child, [&](pugi::xml_node part) { has |= part.attribute("sid").value() == sid; });
+      if (has) what = Moved::other;
+    }
+    return what;
+  }
+
+  // Tells whether the channel of a node has dense keys that are joined by other than straight lines.
+  bool check_channel(pugi::xml_node channel) const {
+    const std::string where = told_channel(channel);
     const pugi::xml_node sampler = document_.target_of(channel.attribute("source").value());
     if (sampler.parent() != channel.parent())
       throw InputError(where + ": its sampler is not in the same <animation>; export it again");
@@ -169,7 +232,11 @@ class Animations {
 
   const Document& document_;
   std::map<std::string, std::size_t> named_, by_sid_;  // how many nodes have an id or a name; a scoped id
-  std::map<std::string, std::size_t> nodes_;           // how many nodes have an id
+  struct Node {
+    std::size_t count = 0;
+    pugi::xml_node element;
+  };
+  std::map<std::string, Node> nodes_;  // by id: how many have it, and one of them
 };
 
 }  // namespace
@@ -177,7 +244,7 @@ class Animations {
 std::vector<std::string> check_animations(const Document& document) {
   const Animations animations(document);
   animations.require_clear_joints();
-  return animations.notes_on_keys();
+  return animations.notes_on_channels();
 }
 
 }  // namespace cscd::scenes::collada

@@ -18,10 +18,10 @@ CheckedCollada checked_collada(const std::string& bytes) {
   pugi::xml_document tree;
   const collada::Document document(bytes, tree);
   collada::check_nodes(document);
-  collada::check_geometries(document);
-  collada::check_controllers(document);
   CheckedCollada checked;
-  checked.notes = collada::check_animations(document);
+  checked.loose_vertices = collada::check_geometries(document);
+  checked.notes = collada::check_controllers(document);
+  for (std::string& note : collada::check_animations(document)) checked.notes.push_back(std::move(note));
   TextWriter writer;
   tree.save(writer, "", pugi::format_raw, pugi::encoding_utf8);
   checked.xml = std::move(writer.text);

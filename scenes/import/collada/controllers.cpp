@@ -60,9 +60,10 @@ class Skin {
         weighted_(skin.child("vertex_weights")),
         names_(names_of(document, skin)) {}
 
-  void check() {
+  // Returns how many vertices have no weight.
+  std::size_t check() {
     check_bind_poses();
-    if (weighted_.child("v")) check_weights();
+    return weighted_.child("v") ? check_weights() : vertices_of(document_, skin_);
   }
 
  private:
@@ -79,7 +80,7 @@ class Skin {
                        std::to_string(names_.count) + " joints; export it again");
   }
 
-  void check_weights() {
+  std::size_t check_weights() {
     const std::optional<Source> weights = document_.numbers_of_source(weighted_, "WEIGHT");
     const pugi::xml_node joint_input = input_of(weighted_, "JOINT"),
                          weight_input = input_of(weighted_, "WEIGHT");
@@ -105,24 +106,35 @@ class Skin {
                        std::to_string(vertices) + " vertices; export it again");
 
     std::string written;
-    bool bound = false;  // a vertex follows the bind shape
+    bool bound = false;               // a vertex follows the bind shape
+    std::vector<bool> weighs(pairs);  // pair by pair
     for (std::size_t i = 0; i < entries.size(); i += stride) {
       const long of = entries[i + joint], by = entries[i + weight];
       if (of >= static_cast<long>(names_.count))
         refuse(i + joint, "joint " + std::to_string(of) + " of " + std::to_string(names_.count));
       if (by < 0 || by >= static_cast<long>(weights->count))
         refuse(i + weight, "weight " + std::to_string(by) + " of " + std::to_string(weights->count));
+      const double value = weights->numbers[weights->offset + weights->stride * static_cast<std::size_t>(by)];
+      if (value < 0) refuse(i + weight, "weight " + std::to_string(by) + ", which is negative");
+      weighs[i / stride] = value > 0;
       bound |= of < 0;
       written +=
           std::to_string(of < 0 ? static_cast<long>(names_.count) : of) + " " + std::to_string(by) + " ";
     }
-    if (!bound && stride == 2 && joint == 0 && weight == 1) return;
+    std::size_t without = 0, first = 0;
+    for (const long count : counts) {
+      const auto from = weighs.begin() + static_cast<std::ptrdiff_t>(first);
+      without += std::find(from, from + count, true) == from + count;
+      first += static_cast<std::size_t>(count);
+    }
+    if (!bound && stride == 2 && joint == 0 && weight == 1) return without;
     // assimp takes <v> for pairs of a joint and a weight.
     weighted_.child("v").text().set(written.c_str());
     while (weighted_.child("input")) weighted_.remove_child("input");
     add_input("WEIGHT", weights->element, "1");
     add_input("JOINT", names_.source, "0");
     if (bound) add_bind_shape();
+    return without;
   }
 
   [[noreturn]] void refuse(std::size_t entry, const std::string& what) const {
@@ -169,7 +181,8 @@ class Skin {
 
 }  // namespace
 
-void check_controllers(const Document& document) {
+std::vector<std::string> check_controllers(const Document& document) {
+  std::size_t without = 0;
   for (const pugi::xml_node library : document.root().children("library_controllers"))
     for (const pugi::xml_node controller : library.children("controller")) {
       if (controller.child("morph"))
@@ -177,8 +190,12 @@ void check_controllers(const Document& document) {
             told(controller) +
             ": is a morph, and morph targets of Collada files are not read; export the model as glTF "
             "or FBX");
-      if (const pugi::xml_node skin = controller.child("skin")) Skin(document, skin).check();
+      if (const pugi::xml_node skin = controller.child("skin")) without += Skin(document, skin).check();
     }
+  if (without == 0) return {};
+  return {std::to_string(without) +
+          " vertices of skins have no weight above 0: they follow the node of their mesh, without its bind "
+          "shape"};
 }
 
 }  // namespace cscd::scenes::collada

@@ -37,6 +37,17 @@ void check_axes(const Source& positions) {
   }
 }
 
+// Marks the vertices that are corners.
+void mark_corners(pugi::xml_node faces, std::vector<bool>& used) {
+  const Layout layout = layout_of(faces);
+  for (const pugi::xml_node p : faces.children("p")) {
+    const std::vector<long> indices = indices_of(p, 0);
+    for (std::size_t i = layout.vertex; i < indices.size(); i += layout.indices)
+      if (static_cast<std::size_t>(indices[i]) < used.size())
+        used[static_cast<std::size_t>(indices[i])] = true;
+  }
+}
+
 void check_faces(pugi::xml_node faces, std::size_t vertices) {
   const std::string_view kind = faces.name();
   if (kind == "trifans" && faces.child("p"))
@@ -59,16 +70,24 @@ void check_faces(pugi::xml_node faces, std::size_t vertices) {
 
 }  // namespace
 
-void check_geometries(const Document& document) {
+std::size_t check_geometries(const Document& document) {
+  std::size_t loose = 0;
   for (const pugi::xml_node library : document.root().children("library_geometries"))
     for (const pugi::xml_node geometry : library.children("geometry")) {
       const pugi::xml_node mesh = geometry.child("mesh");
       const std::optional<Source> positions = document.numbers_of_source(mesh.child("vertices"), "POSITION");
       if (!positions) continue;
       if (positions->count > 0) check_axes(*positions);
-      for (const pugi::xml_node faces : mesh.children())
-        if (std::ranges::find(kFaces, faces.name()) != std::end(kFaces)) check_faces(faces, positions->count);
+      std::vector<bool> used(positions->count);
+      for (const pugi::xml_node faces : mesh.children()) {
+        const bool are_faces = std::ranges::find(kFaces, faces.name()) != std::end(kFaces);
+        if (are_faces) check_faces(faces, positions->count);
+        // assimp keeps the vertices of lines, so that they are counted where its surface is.
+        if (are_faces || std::string_view(faces.name()).starts_with("line")) mark_corners(faces, used);
+      }
+      loose += static_cast<std::size_t>(std::ranges::count(used, false));
     }
+  return loose;
 }
 
 }  // namespace cscd::scenes::collada

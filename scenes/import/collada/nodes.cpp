@@ -5,7 +5,6 @@
 #include "scenes/import/collada/parts.h"
 
 namespace cscd::scenes::collada {
-namespace {
 
 std::size_t numbers_of_transform(std::string_view name) {
   constexpr struct {
@@ -17,6 +16,8 @@ std::size_t numbers_of_transform(std::string_view name) {
     if (row.name == name) return row.numbers;
   return 0;
 }
+
+namespace {
 
 void check_transforms(pugi::xml_node node) {
   for (const pugi::xml_node element : node.children()) {
