@@ -310,7 +310,12 @@ CheckedFile checked_file(const Format& format, std::string bytes) {
     if (checked.loose_vertices > 0) checked.notes.push_back(note_on_loose_vertices(checked.loose_vertices));
     return {std::move(checked.xml), std::move(checked.notes)};
   }
-  if (format.name == "DirectX X") return {std::string(checked_x(bytes)), {}};
+  if (format.name == "DirectX X") {
+    const CheckedX checked = checked_x(bytes);
+    CheckedFile file{std::string(checked.bytes), {}};
+    if (checked.loose_vertices > 0) file.notes.push_back(note_on_loose_vertices(checked.loose_vertices));
+    return file;
+  }
   return {std::move(bytes), {}};
 }
 

@@ -295,6 +295,28 @@ TEST_F(Model, PolygonsOfXFilesAreCutInside) {
   EXPECT_EQ(flag.parts[0].triangles, (Corners{{3, 2, 1}, {3, 1, 0}}));
 }
 
+// assimp leaves out corners of vertices that do not exist, and vertices of no face.
+TEST_F(Model, FacesOfXFilesNameVerticesThatExist) {
+  const std::string text = kXFile;
+  const auto with = [&](const std::string& corners) {
+    std::string other = text;
+    return write("flag.x", other.replace(other.find("3;0,2,3;;"), 9, corners));
+  };
+  for (const std::string vertex : {"4", "99", "-1", "1.5"})
+    EXPECT_TRUE(says(refusal(with("4;0,2,3," + vertex + ";;")),
+                     "mesh 'Flag', face 1 (counted from 0): names vertex " + vertex + " of 4"));
+  EXPECT_EQ(read_model(with("3;0,2,3;;"), {}).notes, std::vector<std::string>{});
+  EXPECT_EQ(read_model(with("3;0,1,2;;"), {}).notes,
+            std::vector<std::string>{"1 vertex is of no face and is left out: no answer is about it"});
+  // The template of a mesh is none, nor is what has its name.
+  std::string named = text;
+  const std::string material = "Material Mesh { 1; 1; 1; 1;; 1; 3; 9; 9;; 0; 0; 0;; }\n ";
+  EXPECT_EQ(refusal(write("named.x", named.insert(named.find("Mesh Flag"), material))), "");
+  const std::string made = "template Mesh {\n <3d82ab44-62da-11cf-ab39-0020af71e433>\n DWORD nVertices;\n}\n";
+  std::string other = text;
+  EXPECT_EQ(refusal(write("made.x", other.insert(other.find("Frame"), made))), "");
+}
+
 TEST_F(Model, RefusesOtherKindsAndDamage) {
   EXPECT_TRUE(says(refusal(write("a.obj", "v 0 0 0\n")), "'.obj' are not read"));
   EXPECT_TRUE(says(refusal(write("a", "xof")), "has no extension, by which"));

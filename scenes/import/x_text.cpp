@@ -1,8 +1,11 @@
 #include "scenes/import/x_text.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/base/error.h"
 #include "scenes/base/number_word.h"
@@ -19,11 +22,83 @@ bool begins_like_number(std::string_view word) {
   return !word.empty() && kDigits.find(word.front()) != kDigits.npos;
 }
 
+// Follows the numbers of a mesh: how many vertices, three numbers for each, how many faces, and for each face
+// how many corners and which vertices they are. assimp leaves corners out whose vertex does not exist.
+class MeshNumbers {
+ public:
+  MeshNumbers() = default;
+  explicit MeshNumbers(std::string_view name) : name_(name), next_(Next::vertices) {}
+
+  void take(std::string_view word) {
+    if (next_ == Next::none) return;
+    if (next_ == Next::position) {
+      if (--left_ == 0) next_ = Next::faces;
+      return;
+    }
+    std::int64_t number = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    const bool whole = error == std::errc{} && end == word.data() + word.size();
+    if (next_ == Next::corner && (!whole || number < 0 || number >= vertices_))
+      throw InputError("mesh '" + std::string(name_) + "', face " + std::to_string(face_) +
+                       " (counted from 0): names vertex " + std::string(word.substr(0, 40)) + " of " +
+                       std::to_string(vertices_) + "; repair it or export the file again");
+    if (!whole || number < 0 || number > UINT32_MAX)
+      next_ = Next::none;  // no mesh but its template, or what assimp refuses
+    else
+      take_number(number);
+  }
+
+  // How many vertices of a mesh that was read to its end are of no face.
+  std::size_t loose() const {
+    return next_ == Next::none && faces_ > 0 && face_ == faces_
+               ? static_cast<std::size_t>(std::ranges::count(used_, false))
+               : 0;
+  }
+
+ private:
+  enum class Next { none, vertices, position, faces, corners, corner };
+
+  void take_number(std::int64_t number) {
+    switch (next_) {
+      case Next::vertices:
+        vertices_ = number;
+        left_ = 3 * number;
+        next_ = number > 0 ? Next::position : Next::faces;
+        return;
+      case Next::faces:
+        faces_ = number;
+        used_.resize(static_cast<std::size_t>(vertices_));  // the text has been as long as that
+        next_ = number > 0 ? Next::corners : Next::none;
+        return;
+      case Next::corners:
+        left_ = number;
+        next_ = Next::corner;
+        break;
+      case Next::corner:
+        used_[static_cast<std::size_t>(number)] = true;
+        --left_;
+        break;
+      case Next::none:
+      case Next::position:
+        return;
+    }
+    if (left_ == 0) next_ = ++face_ < faces_ ? Next::corners : Next::none;
+  }
+
+  std::string_view name_;
+  Next next_ = Next::none;
+  std::int64_t vertices_ = 0, faces_ = 0, face_ = 0;
+  std::int64_t left_ = 0;  // numbers of positions, or corners of the face
+  std::vector<bool> used_;
+};
+
 class XText {
  public:
   explicit XText(std::string_view text) : text_(text) {}
 
-  void check() {
+  // Returns how many vertices are of no face.
+  std::size_t check() {
+    std::size_t loose = 0;
     for (char before = ' '; at_ < text_.size();) {
       const char c = text_[at_];
       if (c == '"') {
@@ -33,16 +108,31 @@ class XText {
       } else if (c == '#' || text_.substr(at_).starts_with("//")) {
         at_ = std::min(text_.find_first_of("\r\n", at_), text_.size());
       } else if (kBetween.find(c) != kBetween.npos) {
-        if (c == '{' || c == '}') before = c;
+        if (c == '{' || c == '}') {
+          before = c;
+          loose += mesh_.loose();
+          mesh_ = {};
+          if (c == '{') begin_mesh();
+          last_ = last_but_one_ = {};
+        }
         ++at_;
       } else {
         check_word(before);
         before = ' ';
       }
     }
+    return loose;
   }
 
  private:
+  // A kind and, as the file likes, a name stand before a brace. Other things may have the name Mesh.
+  void begin_mesh() {
+    if (last_but_one_ == "Mesh")
+      mesh_ = MeshNumbers(last_);
+    else if (last_ == "Mesh" && (last_but_one_.empty() || begins_like_number(last_but_one_)))
+      mesh_ = MeshNumbers("");
+  }
+
   void go_behind(std::string_view end, std::size_t from) {
     at_ = std::min(text_.find(end, from), text_.size() - 1) + 1;
   }
@@ -59,20 +149,25 @@ class XText {
                        std::string(word.substr(0, 40)) +
                        "' stands where a number has to be; export the file again");
     at_ = end;
+    mesh_.take(word);
+    last_but_one_ = last_;
+    last_ = word;
   }
 
   std::string_view text_;
   std::size_t at_ = 0;
+  std::string_view last_, last_but_one_;  // the words since the last brace
+  MeshNumbers mesh_;
 };
 
 }  // namespace
 
-std::string_view checked_x(std::string_view bytes) {
+CheckedX checked_x(std::string_view bytes) {
   bytes = without_byte_order_mark(bytes);
   constexpr std::size_t kHeader = 16;  // "xof 0303txt 0032"
   if (bytes.size() >= kHeader && bytes.starts_with("xof ") && bytes.substr(8, 4) == "txt ")
-    XText(bytes.substr(kHeader)).check();
-  return bytes;
+    return {bytes, XText(bytes.substr(kHeader)).check()};
+  return {bytes, 0};
 }
 
 }  // namespace cscd::scenes
