@@ -6,6 +6,7 @@
 #include "scenes/exchange/mesh_cache.h"
 #include "scenes/exchange/sequence_files.h"
 #include "scenes/exchange/surface_file.h"
+#include "scenes/polygon/cut_polygon.h"
 
 namespace cscd::scenes {
 namespace {
@@ -52,10 +53,32 @@ void require_finite_frame(const std::vector<Vec3>& positions, std::size_t frame)
                        ": a coordinate is not finite; export it again");
 }
 
-CutFaces faces_of(const fs::path& file, const SurfaceFile& surface, std::span<const Vec3> positions) {
+// Finds the first later frame in which each face encloses area that encloses none in the first frame, where
+// all ways to cut it look alike. Faces that never enclose any are left out.
+LateFaces late_faces(const Polygons& faces, MeshSequence& sequence, std::vector<Vec3> positions) {
+  std::vector<std::size_t> open;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    if (faces[f].size() > 3 && !has_area(faces[f], positions)) open.push_back(f);
+  LateFaces late;
+  for (std::size_t frame = 1; !open.empty() && frame < sequence.frame_count(); ++frame) {
+    sequence.read_frame(frame, positions);
+    std::erase_if(open, [&](std::size_t f) {
+      if (!has_area(faces[f], positions)) return false;
+      for (const std::int32_t v : faces[f]) late[f].push_back(positions[static_cast<std::size_t>(v)]);
+      return true;
+    });
+  }
+  return late;
+}
+
+// Cuts the faces of a sequence; `file` is the one that names them.
+CutFaces faces_of(const fs::path& file, const SurfaceFile& surface, MeshSequence& sequence) {
   const std::string name = file.filename().string();
+  std::vector<Vec3> positions;
+  sequence.read_frame(0, positions);
+  const LateFaces late = late_faces(surface.faces, sequence, positions);
   try {
-    CutFaces faces = cut_faces(surface.faces, positions);
+    CutFaces faces = cut_faces(surface.faces, positions, late);
     if (!faces.triangles.empty()) return faces;
   } catch (const InputError& error) {
     throw InputError(name + ": " + error.what());
@@ -113,13 +136,14 @@ class FileSequence final : public MeshSequence {
   explicit FileSequence(SequenceFiles sequence)
       : files_(std::move(sequence.files)),
         first_frame_(sequence.first_frame),
-        first_(read_surface(files_[0])),
-        faces_(faces_of(files_[0], first_, first_.positions)) {}
+        first_(read_surface(files_[0])) {
+    faces_ = faces_of(files_[0], first_, *this);
+  }
 
   std::vector<fs::path> files_;
   double first_frame_;
   SurfaceFile first_;
-  CutFaces faces_;  // as they lie in the first file
+  CutFaces faces_;
 };
 
 class CacheSequence final : public MeshSequence {
@@ -138,9 +162,7 @@ class CacheSequence final : public MeshSequence {
       throw InputError("has " + std::to_string(cache_.vertices()) + " vertices, and " +
                        faces.filename().string() + " has " + std::to_string(surface_.positions.size()) +
                        "; export both from one surface");
-    std::vector<Vec3> first;
-    read_frame(0, first);
-    faces_ = faces_of(faces, surface_, first);
+    faces_ = faces_of(faces, surface_, *this);
   }
   std::string format() const override { return pc2_ ? "PC2 cache" : "MDD cache"; }
   std::vector<std::string> notes() const override {
@@ -165,7 +187,7 @@ class CacheSequence final : public MeshSequence {
   std::string bytes_;
   MeshCache cache_;
   SurfaceFile surface_;
-  CutFaces faces_;  // as they lie in the first frame
+  CutFaces faces_;
 };
 
 }  // namespace

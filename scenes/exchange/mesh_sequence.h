@@ -33,7 +33,7 @@ class MeshSequence {
   virtual std::optional<double> fps() const { return std::nullopt; }
   virtual std::size_t vertex_count() const = 0;
   // Corners of all triangles, in the order of the file of the first frame; those that repeat a corner too.
-  // Faces of more corners are cut as they lie in the first frame.
+  // Faces of more corners are cut as they lie in the first frame in which they enclose area.
   virtual std::span<const std::array<std::int32_t, 3>> triangles() const = 0;
   // Throws InputError for a frame that cannot be read or is not of the same surface as frame 0.
   virtual void read_frame(std::size_t frame, std::vector<Vec3>& positions) = 0;

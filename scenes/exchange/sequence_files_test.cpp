@@ -9,6 +9,7 @@
 #include "scenes/base/test_says.h"
 #include "scenes/exchange/mesh_cache.h"
 #include "scenes/exchange/mesh_sequence.h"
+#include "scenes/exchange/surface_file.h"
 
 namespace cscd::scenes {
 namespace {
@@ -85,6 +86,36 @@ TEST_F(Sequence, IsFoundInItsFolder) {
   for (const char* name : {"walk.1.ply", "cloth.-1.obj", "cloth.0.obj"}) fs::remove(scratch.path / name);
   put({"cache.mdd", "cache.obj"});
   EXPECT_EQ(sequence_file(scratch.path).filename(), "cache.mdd");
+}
+
+// A polygon that lies in a point or on a line at first is cut as it lies in the first frame that shows it.
+// Mutations: it is cut in the first frame; in the last; all polygons are cut in the frame of one of them.
+TEST_F(Sequence, CutsPolygonsWhereTheyFirstEncloseArea) {
+  const std::vector<Vec3> square = {{9, 0, 0}, {9, 2, 0}, {9, 2, 2}, {9, 0, 2}},
+                          dart = {{0, 0, 0}, {2, 1, 0}, {4, 0, 0}, {2, 4, 0}};
+  // The quadrilateral of the first four vertices is a point, a line, a dart, and a dart with another notch.
+  // The other one is a dart in the first frame alone.
+  const std::vector<std::vector<Vec3>> moving = {std::vector<Vec3>(4, Vec3::Zero()),
+                                                 {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}},
+                                                 dart,
+                                                 {{2, 1, 0}, {4, 0, 0}, {2, 4, 0}, {0, 0, 0}}};
+  const auto frame = [&](std::size_t f) {
+    std::vector<Vec3> all = moving[f];
+    const std::vector<Vec3>& second = f == 0 ? dart : square;
+    all.insert(all.end(), second.begin(), second.end());
+    return all;
+  };
+  const std::vector<std::array<std::int32_t, 3>> right = {{0, 1, 3}, {1, 2, 3}, {4, 5, 7}, {5, 6, 7}};
+  std::string cache = mesh_cache_head(MeshCacheFormat::pc2, 8, 4, 25, 0);
+  for (std::size_t f = 0; f < 4; ++f) {
+    const std::string text = to_obj(frame(f), {});
+    test::write(scratch.path / ("f." + std::to_string(f) + ".obj"), text + "f 1 2 3 4\nf 5 6 7 8\n");
+    cache += mesh_cache_frame(MeshCacheFormat::pc2, frame(f));
+  }
+  test::write(scratch.path / "c.pc2", cache);
+  test::write(scratch.path / "c.obj", to_obj(frame(1), {}) + "f 1 2 3 4\nf 5 6 7 8\n");
+  for (const char* name : {"f.0.obj", "c.pc2"})
+    EXPECT_TRUE(std::ranges::equal(open_mesh_sequence(scratch.path / name)->triangles(), right)) << name;
 }
 
 // The first frame says how polygons are cut; faces of other frames are the same, however they lie.

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstdio>
+#include <numeric>
 
 #include "core/base/error.h"
 #include "scenes/exchange/number_bytes.h"
@@ -20,11 +21,30 @@ void require_sound(const SurfaceFile& surface) {
                        std::to_string(surface.positions.size()) + " vertices; export it again");
 }
 
-CutFaces cut_faces(const Polygons& faces, std::span<const Vec3> positions) {
+namespace {
+
+// Cuts a face whose corners lie at `corners`, one after the other.
+PolygonCut cut_late(std::span<const std::int32_t> face, std::span<const Vec3> corners, CutFaces& cut) {
+  std::vector<std::int32_t> numbers(face.size());
+  std::iota(numbers.begin(), numbers.end(), 0);
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  const PolygonCut result = cut_polygon(numbers, corners, triangles);
+  for (std::array<std::int32_t, 3> t : triangles) {
+    for (std::int32_t& corner : t) corner = face[static_cast<std::size_t>(corner)];
+    cut.triangles.push_back(t);
+  }
+  return result;
+}
+
+}  // namespace
+
+CutFaces cut_faces(const Polygons& faces, std::span<const Vec3> positions, const LateFaces& late) {
   CutFaces cut;
   std::size_t overlapping = 0;
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const PolygonCut result = cut_polygon(faces[f], positions, cut.triangles);
+    const auto moment = late.find(f);
+    const PolygonCut result = moment == late.end() ? cut_polygon(faces[f], positions, cut.triangles)
+                                                   : cut_late(faces[f], moment->second, cut);
     if (result == PolygonCut::none)
       throw InputError("face " + std::to_string(f) + " (counted from 0): its " +
                        std::to_string(faces[f].size()) +

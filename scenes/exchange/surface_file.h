@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,8 +48,11 @@ struct CutFaces {
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::string note;  // on faces that overlap themselves; may be empty
 };
-// Cuts faces into triangles, as they lie at these positions. Throws InputError for a face that cannot be cut.
-CutFaces cut_faces(const Polygons& faces, std::span<const Vec3> positions);
+// Where the corners of some faces lie at other moments than that of the rest.
+using LateFaces = std::map<std::size_t, std::vector<Vec3>>;
+// Cuts faces into triangles, as they lie at these positions, or where `late` has them. Throws InputError for
+// a face that cannot be cut.
+CutFaces cut_faces(const Polygons& faces, std::span<const Vec3> positions, const LateFaces& late = {});
 
 // Write a surface so that every position can be read back bit for bit: an OBJ file with 17 digits, a PLY file
 // in binary doubles, the lowest byte first. A PLY file may have a number and a colour for each vertex, as the

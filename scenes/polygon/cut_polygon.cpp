@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "scenes/polygon/clipped_ears.h"
@@ -123,32 +124,71 @@ Triangles cut_many(std::span<const std::int32_t> corners, std::span<const Vec3> 
   return ears.empty() ? triangles : ears;
 }
 
-}  // namespace
-
-PolygonCut cut_polygon(std::span<const std::int32_t> corners, std::span<const Vec3> positions,
-                       Triangles& triangles) {
-  const bool finite =
-      std::ranges::all_of(corners, [&](std::int32_t corner) { return at(positions, corner).allFinite(); });
-  if (corners.size() == 3 || !finite) {
-    add_fan(corners, triangles);
-    return PolygonCut::good;
+// The corners of a polygon in their order, scaled by a power of two so that the largest coordinate is about
+// 1. The products of coordinates of very small or very large polygons would vanish or overflow otherwise.
+std::vector<Vec3> at_unit_size(std::span<const std::int32_t> corners, std::span<const Vec3> positions) {
+  std::vector<Vec3> loop;
+  double largest = 0;
+  for (const std::int32_t corner : corners) {
+    loop.push_back(at(positions, corner));
+    largest = std::max(largest, loop.back().cwiseAbs().maxCoeff());
   }
-  const Corners kept = without_repeats(corners, positions, triangles);
-  const Plane plane = plane_of(kept, positions);
+  if (largest == 0) return loop;
+  const int exponent = std::ilogb(largest);
+  for (Vec3& x : loop)
+    for (double& coordinate : x) coordinate = std::ldexp(coordinate, -exponent);
+  return loop;
+}
+
+Corners numbered(std::size_t count) {
+  Corners corners(count);
+  std::iota(corners.begin(), corners.end(), 0);
+  return corners;
+}
+
+bool are_finite(std::span<const std::int32_t> corners, std::span<const Vec3> positions) {
+  return std::ranges::all_of(corners, [&](std::int32_t corner) { return at(positions, corner).allFinite(); });
+}
+
+PolygonCut cut_loop(std::span<const Vec3> loop, Triangles& triangles) {
+  const Corners kept = without_repeats(numbered(loop.size()), loop, triangles);
+  const Plane plane = plane_of(kept, loop);
   Triangles cut;
   if (kept.size() == 4) {
-    cut_quadrilateral(kept, positions, cut);
+    cut_quadrilateral(kept, loop, cut);
   } else if (kept.size() == 3 ||
              plane.normal.isZero(0)) {  // without area, all ways to cut it are equally good
     add_fan(kept, cut);
   } else {
-    cut = cut_many(kept, positions, plane);
+    cut = cut_many(kept, loop, plane);
   }
   triangles.insert(triangles.end(), cut.begin(), cut.end());
   if (cut.empty()) return PolygonCut::none;
   const bool overlapping =
-      plane.flat && std::ranges::any_of(cut, [&](const auto& t) { return turned(t, positions, plane); });
+      plane.flat && std::ranges::any_of(cut, [&](const auto& t) { return turned(t, loop, plane); });
   return overlapping ? PolygonCut::overlapping : PolygonCut::good;
+}
+
+}  // namespace
+
+PolygonCut cut_polygon(std::span<const std::int32_t> corners, std::span<const Vec3> positions,
+                       Triangles& triangles) {
+  if (corners.size() == 3 || !are_finite(corners, positions)) {
+    add_fan(corners, triangles);
+    return PolygonCut::good;
+  }
+  Triangles cut;
+  const PolygonCut result = cut_loop(at_unit_size(corners, positions), cut);
+  for (const auto& [a, b, c] : cut)
+    triangles.push_back({corners[static_cast<std::size_t>(a)], corners[static_cast<std::size_t>(b)],
+                         corners[static_cast<std::size_t>(c)]});
+  return result;
+}
+
+bool has_area(std::span<const std::int32_t> corners, std::span<const Vec3> positions) {
+  if (!are_finite(corners, positions)) return false;
+  const std::vector<Vec3> loop = at_unit_size(corners, positions);
+  return !plane_of(numbered(loop.size()), loop).normal.isZero(0);
 }
 
 }  // namespace cscd::scenes

@@ -8,7 +8,7 @@
 #include "core/base/vec3.h"
 
 // How the readers of all formats cut polygons into triangles. Files of one format may come in many frames, so
-// a reader cuts a polygon once, in the first frame, and keeps the cut.
+// a reader cuts a polygon once and keeps the cut.
 namespace cscd::scenes {
 
 enum class PolygonCut {
@@ -27,6 +27,10 @@ enum class PolygonCut {
 // refuse; a polygon with one is cut in any way.
 PolygonCut cut_polygon(std::span<const std::int32_t> corners, std::span<const Vec3> positions,
                        std::vector<std::array<std::int32_t, 3>>& triangles);
+
+// Whether a polygon encloses any area, so that how it lies says how to cut it. A polygon that lies in a point
+// or on a line, or whose halves turn against each other and are equally large, encloses none.
+bool has_area(std::span<const std::int32_t> corners, std::span<const Vec3> positions);
 
 // What a reader notes of overlapping polygons, behind their number.
 inline constexpr char kOverlapping[] =

@@ -130,6 +130,24 @@ TEST(Polygons, NeedNotBeFlat) {
   EXPECT_NEAR(size, 5, 0.2);
 }
 
+// Mutation: products of coordinates are taken as they are, and vanish or overflow.
+TEST(Polygons, AreCutAlikeInAllSizes) {
+  for (const Case& shape : kCases) {
+    std::vector<std::array<std::int32_t, 3>> right;
+    ASSERT_EQ(cut_polygon(all_of(shape.corners), shape.corners, right), PolygonCut::good);
+    EXPECT_EQ(has_area(all_of(shape.corners), shape.corners), shape.area > 0) << shape.name;
+    for (const int exponent : {-1070, -540, -300, 300, 540, 1000}) {
+      std::vector<Vec3> positions = shape.corners;
+      for (Vec3& x : positions)
+        for (double& coordinate : x) coordinate = std::ldexp(coordinate, exponent);
+      std::vector<std::array<std::int32_t, 3>> triangles;
+      EXPECT_EQ(cut_polygon(all_of(positions), positions, triangles), PolygonCut::good);
+      EXPECT_EQ(triangles, right) << shape.name << " times 2^" << exponent;
+      EXPECT_EQ(has_area(all_of(positions), positions), shape.area > 0) << shape.name;
+    }
+  }
+}
+
 TEST(Polygons, ThatOverlapThemselvesAreNamed) {
   const std::vector<Vec3> bow = {{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 2, 0}},
                           star = {{0, 10, 0}, {6, -8, 0}, {-9, 3, 0}, {9, 3, 0}, {-6, -8, 0}};
