@@ -140,7 +140,7 @@ TEST_F(ExportFiles, RefusesSequencesThatAreNone) {
       {"mv kept a.0002.obj; head -n -1 a.0002.obj > b; mv b a.0002.obj", "a.0000.obj",
        "other faces than the first"},
       {"grep -v '^v ' a.0001.obj > b; mv b a.0001.obj", "a.0000.obj", "a.0001.obj: has no vertices"},
-      {"printf 'v 0 0\\n' > a.0001.obj", "a.0000.obj", "a.0001.obj: line 1: '' is no coordinate"},
+      {"printf 'v 0 0\\n' > a.0001.obj", "a.0000.obj", "a.0001.obj: line 1: has 2 coordinates of 3"},
       {"printf 'v 0 0 0\\nf 1 2 9\\n' > a.0000.obj", "a.0000.obj",
        "a.0000.obj: line 2: a face names vertex 9"},
       {"head -c 500 c.pc2 > d.pc2; cp c.obj d.obj", "d.pc2", "which is not what its 500 bytes hold"},

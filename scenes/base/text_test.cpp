@@ -36,6 +36,7 @@ TEST(ByteOrderMarks, AreLeftOutOrNamed) {
   EXPECT_EQ(without_byte_order_mark("\xEF\xBB\xBFv 1"), "v 1");
   EXPECT_EQ(without_byte_order_mark("v 1"), "v 1");
   EXPECT_EQ(without_byte_order_mark(""), "");
+  EXPECT_EQ(without_byte_order_mark("v\0 1"sv), "v\0 1"sv);
   for (const std::string_view text : {"\xFF\xFEv\0"sv, "\xFE\xFF\0v"sv, "v\0 \0"sv, "\0v\0 "sv})
     EXPECT_TRUE(says(test::refusal([&] { without_byte_order_mark(text); }), "is text in UTF-16"));
   for (const std::string_view text : {"\xFF\xFE\0\0v\0\0\0"sv, "\0\0\xFE\xFF\0\0\0v"sv})

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <charconv>
+#include <iterator>
+#include <string>
 #include <utility>
 
 #include "scenes/base/text_encoding.h"
@@ -23,13 +25,38 @@ bool is_one_of(std::string_view word, const std::string_view (&words)[Count]) {
   return std::find(std::begin(words), std::end(words), word) != std::end(words);
 }
 
+// Programs that join files leave the byte order mark of each before its first line.
+std::string_view without_mark(std::string_view word) {
+  return word.starts_with("\xEF\xBB\xBF") ? word.substr(3) : word;
+}
+
+// Whether a word may be meant as the statement of a vertex or a face, with its first number behind it or not.
+bool looks_like_vertex_or_face(std::string_view word) {
+  if (word == "fo") return true;
+  const char letter = word.empty() ? ' ' : static_cast<char>(word.front() | 0x20);  // in lower case
+  return (letter == 'v' || letter == 'f') &&
+         (word.size() == 1 || std::string_view("+-.,0123456789/").find(word[1]) != word.npos);
+}
+
+bool is_foreign(char c) {
+  return c < '!' || c > '~';
+}
+
+// A word without quotation marks and without what is not seen, such as a no-break space.
+std::string plain(std::string_view word) {
+  std::string letters;
+  std::ranges::copy_if(word, std::back_inserter(letters),
+                       [](char c) { return !is_foreign(c) && c != '"' && c != '\'' && c != '`'; });
+  return letters;
+}
+
 class ObjReader {
  public:
   explicit ObjReader(std::string_view text) : lines_(text) {}
 
   SurfaceFile read() {
     while (lines_.next()) {
-      const std::string_view kind = without_byte_order_mark(word());
+      const std::string_view kind = without_mark(word());
       const bool goes_on = std::exchange(goes_on_, false);
       if (kind == "v")
         read_vertex();
@@ -39,9 +66,16 @@ class ObjReader {
         pass_over(kind, goes_on);
     }
     require_vertices();
-    note(curves_, "curves and surfaces that are no polygons left out");
-    note(unknown_, "lines begin with words that OBJ files do not have, as line " +
-                       std::to_string(first_unknown_) + " does, and are left out");
+    if (curves_ > 0)
+      surface_.notes.push_back(std::to_string(curves_) +
+                               " curves and surfaces that are no polygons left out");
+    if (unknown_ == 1)
+      surface_.notes.push_back("line " + std::to_string(first_unknown_) +
+                               " begins with a word that OBJ files do not have, and is left out");
+    if (unknown_ > 1)
+      surface_.notes.push_back(std::to_string(unknown_) +
+                               " lines begin with words that OBJ files do not have, as line " +
+                               std::to_string(first_unknown_) + " does, and are left out");
     return std::move(surface_);
   }
 
@@ -70,7 +104,11 @@ class ObjReader {
 
   void read_vertex() {
     Vec3 x;
-    for (int axis = 0; axis < 3; ++axis) x[axis] = lines_.number(word(), "coordinate");
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::string_view coordinate = word();
+      if (coordinate.empty()) lines_.fail("has " + std::to_string(axis) + " coordinates of 3");
+      x[axis] = lines_.number(coordinate, "coordinate");
+    }
     surface_.positions.push_back(x);
     // A weight or a colour may follow.
     for (std::string_view more = word(); !more.empty(); more = word())
@@ -105,15 +143,21 @@ class ObjReader {
     return static_cast<std::int32_t>(vertex);
   }
 
+  [[noreturn]] void refuse(std::string_view kind) const {
+    if (kind.find('\0') != kind.npos) lines_.fail("holds a byte 0, so it is no text");
+    const std::string shown = lines_.quoted(kind) + " is no statement";
+    lines_.fail(looks_like_vertex_or_face(plain(kind))
+                    ? shown + ", although it looks like a vertex or a face"
+                    : shown + "; it holds bytes that no statement has, each shown as a question mark");
+  }
+
   // Passes over a line that is neither a vertex nor a face, but for one that may be meant as such.
   void pass_over(std::string_view kind, bool goes_on) {
     const bool known =
         is_one_of(kind, kOtherStatements) || is_one_of(kind, kLines) || is_one_of(kind, kCurves);
-    const char letter = static_cast<char>(kind.front() | 0x20);  // in lower case
-    const bool meant = (letter == 'v' || letter == 'f') &&
-                       (kind.size() == 1 || std::string_view("+-.,0123456789/").find(kind[1]) != kind.npos);
-    if (meant)
-      lines_.fail(lines_.quoted(kind) + " is no statement, although it looks like a vertex or a face");
+    if (looks_like_vertex_or_face(plain(kind)) && !known) refuse(kind);
+    // The words of a name that goes on from the line before may be of any letters.
+    if (!goes_on && std::ranges::any_of(kind, is_foreign)) refuse(kind);
     if (kind == "call") lines_.fail("has another file read in its place, which is not followed");
     surface_.points_and_lines += is_one_of(kind, kLines);
     curves_ += is_one_of(kind, kCurves);
@@ -130,10 +174,6 @@ class ObjReader {
                        std::to_string(highest_ + 1) + ", and the file has " + std::to_string(count) +
                        " vertices; export the file again");
     require_sound(surface_);
-  }
-
-  void note(std::size_t count, const std::string& what) {
-    if (count > 0) surface_.notes.push_back(std::to_string(count) + " " + what);
   }
 
   TextLines lines_;

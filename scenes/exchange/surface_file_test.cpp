@@ -118,26 +118,44 @@ TEST(SurfaceFiles, ObjWordsThatAreUnknownAreLeftOutWithANote) {
   EXPECT_EQ(read.notes[0], "1 curves and surfaces that are no polygons left out");
   EXPECT_EQ(read.notes[1],
             "2 lines begin with words that OBJ files do not have, as line 1 does, and are left out");
+  const SurfaceFile one =
+      read_obj(std::string(kPlainObj) + "hello \"v\"\ng \xC3\xBC \\\n\xC3\xA4 b\n# \xC3\xB6\n");
+  EXPECT_EQ(one.notes, std::vector<std::string>{
+                           "line 5 begins with a word that OBJ files do not have, and is left out"});
 }
 
 // Mutations: # begins a comment everywhere; a number ends where it is no number any more.
 TEST(SurfaceFiles, ObjNumbersAreNumbersOrRefused) {
   EXPECT_TRUE(says(obj_refusal(std::string("v 0 0 1\0\n", 9)), "line 1: '1?' is no coordinate"));
-  for (const auto& [text, what] : {std::pair("v 0 0 0\nv 0 0 1.#IND\n", "line 2: '1.#IND' is no coordinate"),
-                                   {"v 1,5 0 0\n", "line 1: '1,5' is no coordinate"},
-                                   {"v 0x10 0 0\n", "line 1: '0x10' is no coordinate"},
-                                   {"v 0 1e400 0\n", "line 1: a coordinate is not finite"},
-                                   {"v 0 -inf 0\n", "line 1: a coordinate is not finite"},
-                                   {"v 0 0\n", "line 1: '' is no coordinate"},
-                                   {"v 0 0 0 v 1 1 1\n", "line 1: 'v' stands behind a vertex"},
-                                   {"v 0 0 0\nf 1,1,1\n", "line 2: '1,1,1' is no vertex number"},
-                                   {"v 0 0 0\nf 1 1.0 1\n", "line 2: '1.0' is no vertex number"},
-                                   {"v 0 0 0\nf 1 0 1\n", "line 2: '0' names no vertex"},
-                                   {"v 0 0 0\nV 0 0 0\n", "line 2: 'V' is no statement"},
-                                   {"v 0 0 0\nf1 1 1\n", "line 2: 'f1' is no statement"},
-                                   {"v 0 0 0\nf 1 \\ 1 1\n", "line 2: a backslash stands before"},
-                                   {"v 0 0 0\ncall a.obj\n", "line 2: has another file read"},
-                                   {"\xFF\xFEv", "is text in UTF-16"}})
+  EXPECT_TRUE(
+      says(obj_refusal(std::string("v 0 0 0\nv\0 0 0 1\n", 18)), "line 2: holds a byte 0, so it is no text"));
+  EXPECT_TRUE(says(obj_refusal(std::string("v\0 0 0 1\n", 10)), "line 1: holds a byte 0, so it is no text"));
+  for (const auto& [text, what] :
+       {std::pair("v 0 0 0\nv 0 0 1.#IND\n", "line 2: '1.#IND' is no coordinate"),
+        {"v 1,5 0 0\n", "line 1: '1,5' is no coordinate"},
+        {"v 0x10 0 0\n", "line 1: '0x10' is no coordinate"},
+        {"v 0 1e400 0\n", "line 1: a coordinate is not finite"},
+        {"v 0 -inf 0\n", "line 1: a coordinate is not finite"},
+        {"v 0 0\n", "line 1: has 2 coordinates of 3"},
+        {"v 0 0 0\nv\n", "line 2: has 0 coordinates of 3"},
+        {"v 0 0 0\nv\xC2\xA0 4 0 0\n", "line 2: 'v?\?' is no statement, although"},
+        {"v 0 0 0\nv\xC2\xA0"
+         "4 0 0\n",
+         "line 2: 'v?\?4' is no statement, although"},
+        {"v 0 0 0\n\xE2\x80\x8Bv 4 0 0\n", "line 2: '???v' is no statement, although"},
+        {"g a \\\n\xC2\xA0v 4 0 0\n", "line 2: '??v' is no statement, although"},
+        {"v 0 0 0\n\"v 4 0 0\"\n", "line 2: '\"v' is no statement, although"},
+        {"v 0 0 0\n'f' 1 1 1\n", "line 2: ''f'' is no statement, although"},
+        {"v 0 0 0\n\xC3\xBC 4 0 0\n", "line 2: '\?\?' is no statement; it holds bytes"},
+        {"v 0 0 0 v 1 1 1\n", "line 1: 'v' stands behind a vertex"},
+        {"v 0 0 0\nf 1,1,1\n", "line 2: '1,1,1' is no vertex number"},
+        {"v 0 0 0\nf 1 1.0 1\n", "line 2: '1.0' is no vertex number"},
+        {"v 0 0 0\nf 1 0 1\n", "line 2: '0' names no vertex"},
+        {"v 0 0 0\nV 0 0 0\n", "line 2: 'V' is no statement"},
+        {"v 0 0 0\nf1 1 1\n", "line 2: 'f1' is no statement"},
+        {"v 0 0 0\nf 1 \\ 1 1\n", "line 2: a backslash stands before"},
+        {"v 0 0 0\ncall a.obj\n", "line 2: has another file read"},
+        {"\xFF\xFEv", "is text in UTF-16"}})
     EXPECT_TRUE(says(obj_refusal(text), what)) << text;
 }
 
