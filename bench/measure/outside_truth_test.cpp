@@ -139,7 +139,20 @@ TEST_F(TruthBesideCache, MakesATableOfTheCachesOfAFolder) {
   const std::string table = tables.substr(begin, tables.find("\n\n", begin) - begin);
   EXPECT_NE(table.find("\nstep "), std::string::npos) << table;
   EXPECT_EQ(table.find("other"), std::string::npos) << table;  // no truth lies beside it
-  expect_refused(run("mkdir none && cscd run --input none --json out2"), "none: holds no point cache (.h5)");
+  expect_refused(run("mkdir none && cscd run --input none --json out2"),
+                 "none: holds no point cache (.h5) and no moving surface");
+}
+
+// Mutation: a folder is one of point caches alone.
+TEST_F(TruthBesideCache, IsNotAskedOfTheFolderOfASequence) {
+  const Ran ran =
+      run("mkdir walk && cd walk && for z in 1 2; do printf \"v 0 0 0\\nv 1 0 0\\nv 0 1 $z\\nf 1 2 3\\n\" > "
+          "w.$z.obj; "
+          "done\ncd .. && cscd run --input walk --strategy base,drvbc_fast_complete --repetitions 1 --json "
+          "walk.json");
+  EXPECT_EQ(ran.status, 0) << ran.errors;
+  EXPECT_TRUE(ran.out.ends_with("record: walk.json\n")) << ran.out;
+  EXPECT_EQ(truth_of("walk.json"), ordered_json());
 }
 
 TEST_F(TruthBesideCache, IsOfOneStepAlone) {

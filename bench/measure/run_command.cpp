@@ -23,6 +23,7 @@
 #include "scenes/base/files_in.h"
 #include "scenes/catalog/plain_name.h"
 #include "scenes/catalog/scene.h"
+#include "scenes/exchange/sequence_files.h"
 
 namespace cscd::bench {
 namespace {
@@ -153,12 +154,14 @@ void make_folder(const std::filesystem::path& folder, const std::string& option)
                      "; choose another with " + option);
 }
 
-// The point caches of a folder.
+// The point caches of a folder. A folder without any may be that of one moving surface, which is one input.
 std::vector<std::string> caches_in(const std::filesystem::path& folder) {
   const std::vector<std::filesystem::path> caches = files_in(folder, {".h5"});
-  if (caches.empty())
-    throw InputError("folder " + folder.string() +
-                     ": holds no point cache (.h5); name a folder that does, or a file");
+  if (caches.empty() && std::ranges::none_of(files_in(folder, {""}), scenes::is_mesh_sequence_file))
+    throw InputError(
+        "folder " + folder.string() +
+        ": holds no point cache (.h5) and no moving surface (.obj .ply .pc2 .mdd); name a folder "
+        "that does, or a file");
   return {caches.begin(), caches.end()};
 }
 
@@ -210,10 +213,13 @@ void run(const RunOptions& options) {
     return;
   }
   std::error_code unknown;
-  const bool is_folder = std::filesystem::is_directory(options.request.scene, unknown);
-  if (is_folder || options.request.scene == kAllScenes) {
-    if (!run_each(options, is_folder ? caches_in(options.request.scene) : scenes::all_scene_names()))
-      throw kVerificationFailed;
+  std::vector<std::string> several;
+  if (std::filesystem::is_directory(options.request.scene, unknown))
+    several = caches_in(options.request.scene);
+  else if (options.request.scene == kAllScenes)
+    several = scenes::all_scene_names();
+  if (!several.empty()) {
+    if (!run_each(options, several)) throw kVerificationFailed;
     return;
   }
   OutputFile output(options.output, options.force);
