@@ -106,7 +106,7 @@ class FileSequence final : public MeshSequence {
   }
   std::vector<std::string> notes() const override {
     return notes_of(first_, faces_,
-                    files_.size() < 2 ? ""
+                    files_.size() < 2 ? alone_
                                       : "the frames are " + std::to_string(files_.size()) + " files, " +
                                             files_.front().filename().string() + " to " +
                                             files_.back().filename().string());
@@ -136,12 +136,14 @@ class FileSequence final : public MeshSequence {
   explicit FileSequence(SequenceFiles sequence)
       : files_(std::move(sequence.files)),
         first_frame_(sequence.first_frame),
+        alone_(std::move(sequence.note)),
         first_(read_surface(files_[0])) {
     faces_ = faces_of(files_[0], first_, *this);
   }
 
   std::vector<fs::path> files_;
   double first_frame_;
+  std::string alone_;  // the note on a single file
   SurfaceFile first_;
   CutFaces faces_;
 };

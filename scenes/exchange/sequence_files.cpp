@@ -104,6 +104,34 @@ void require_clear_dashes(const std::map<FrameName, Frames>& sequences, const Fr
         "; write a point before the numbers, as in cloth.-1.obj, or move one sequence elsewhere");
 }
 
+// A name in which a mark stands for each number.
+std::string without_numbers(const fs::path& path) {
+  std::string shape;
+  bool in_number = false;
+  for (const char c : path.stem().string()) {
+    const bool digit = c >= '0' && c <= '9';
+    if (!digit || !in_number) shape += digit ? '#' : c;
+    in_number = digit;
+  }
+  return shape;
+}
+
+// What to note of a file that is alone by its last number, where others differ from it in an earlier number,
+// as w_0001_v2.obj and w_0002_v2.obj do.
+std::string note_on_other_numbers(const fs::path& path, const std::vector<fs::path>& alike) {
+  std::size_t others = 0;
+  fs::path first;
+  for (const fs::path& file : alike) {
+    if (file.filename() == path.filename() || without_numbers(file) != without_numbers(path)) continue;
+    if (others++ == 0 || file < first) first = file;
+  }
+  if (others == 0) return {};
+  return "beside it " +
+         (others == 1 ? "lies 1 file that differs" : "lie " + std::to_string(others) + " files that differ") +
+         " in a number before the last, as " + first.filename().string() +
+         " does; for frames of one sequence, let their number be the last in their names";
+}
+
 // Returns the first file of the one sequence, or the one cache, that a folder holds.
 fs::path sequence_in_folder(const fs::path& folder) {
   const std::vector<fs::path> files = files_in(folder);
@@ -167,6 +195,7 @@ SequenceFiles files_of_sequence(const fs::path& path) {
     sequence.files.push_back(file);
   }
   sequence.first_frame = static_cast<double>(first);
+  if (sequence.files.size() == 1) sequence.note = note_on_other_numbers(path, alike);
   return sequence;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 // Which files of a folder are the frames of one sequence.
@@ -13,6 +14,7 @@ bool is_mesh_sequence_file(const std::filesystem::path& path);
 struct SequenceFiles {
   std::vector<std::filesystem::path> files;
   double first_frame = 0;  // the number in the name of the first file
+  std::string note{};      // on files beside a single one that may be meant as its frames; may be empty
 };
 
 // Returns the sequence of a file. The names of its files differ in the last number before the extension

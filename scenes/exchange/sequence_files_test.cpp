@@ -75,6 +75,25 @@ TEST_F(Sequence, MayJoinItsNumbersByADash) {
         says(refusal(name), "whether the dash of walk-1.obj is a sign cannot be told beside walk0.obj"));
 }
 
+// Mutation: any number of a name may differ, or none.
+TEST_F(Sequence, IsNotedWhereAnEarlierNumberDiffers) {
+  const auto note = [&](const char* of) { return files_of_sequence(scratch.path / of).note; };
+  put({"w_0001_v2.obj", "w_v2.obj", "u_0002_v2.obj", "w_0003_v2.ply"});
+  EXPECT_EQ(note("w_0001_v2.obj"), "");
+  put({"w_0002_v2.obj"});
+  EXPECT_EQ(
+      note("w_0001_v2.obj"),
+      "beside it lies 1 file that differs in a number before the last, as w_0002_v2.obj does; for frames "
+      "of one sequence, let their number be the last in their names");
+  EXPECT_EQ(open_mesh_sequence(scratch.path / "w_0001_v2.obj")->notes(),
+            std::vector<std::string>{note("w_0001_v2.obj")});
+  put({"w_0003_v2.obj"});
+  EXPECT_TRUE(
+      says(note("w_0002_v2.obj"), "lie 2 files that differ in a number before the last, as w_0001_v2"));
+  put({"w_0001_v3.obj"});  // two frames by the last number
+  EXPECT_EQ(note("w_0001_v2.obj"), "");
+}
+
 TEST_F(Sequence, IsFoundInItsFolder) {
   EXPECT_TRUE(says(folder_refusal(), "is a folder without OBJ or PLY files"));
   put({"notes.txt", "cloth.-1.obj", "cloth.0.obj"});
