@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <pybind11/eigen.h>  // vectors of contacts
 #include <pybind11/functional.h>
 #include <pybind11/numpy.h>
@@ -95,6 +96,15 @@ std::size_t index_of(int obstacle) {
 
 constexpr auto kWithoutLock = py::call_guard<py::gil_scoped_release>();
 
+// Protocols 0 and 1 of pickle ask the common base of compiled classes for a value, which it has not. Objects
+// of such a class are pickled by protocol 2 instead.
+template <class Type>
+void use_newer_protocols(py::class_<Type>& type) {
+  type.def("__reduce_ex__", [](const py::object& self, int protocol) {
+    return py::module_::import("builtins").attr("object").attr("__reduce_ex__")(self, std::max(protocol, 2));
+  });
+}
+
 // Has objects of a class pickled and copied by the listed members, in order.
 template <class Type, class... Members>
 void pickle_by(py::class_<Type>& type, Members Type::*... members) {
@@ -108,6 +118,7 @@ void pickle_by(py::class_<Type>& type, Members Type::*... members) {
                         ((value.*members = state[i++].template cast<Members>()), ...);
                         return value;
                       }));
+  use_newer_protocols(type);
 }
 
 }  // namespace
@@ -263,7 +274,9 @@ PYBIND11_MODULE(_cscd, module) {
   pickle_by(crossings, &Crossings::overlaps, &Crossings::touching);
 
   using PathsAnswer = SelfCollision::PathsAnswer;
-  py::class_<PathsAnswer>(module, "PathsAnswer", "What is known of paths over a span of time.")
+  py::class_<PathsAnswer> paths_answer(module, "PathsAnswer", "What is known of paths over a span of time.");
+  use_newer_protocols(paths_answer);
+  paths_answer
       .def(py::pickle(
           [](const PathsAnswer& a) {
             return py::make_tuple(static_cast<int>(a.verdict), a.from, a.to, a.within, a.faces);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <fstream>
 #include <array>
 #include <limits>
 #include <string>
@@ -82,6 +83,7 @@ struct PointCacheReader::File {
     if (!std::filesystem::exists(status)) throw InputError(path + ": no such file; check the name");
     if (!std::filesystem::is_regular_file(status))
       throw InputError(path + ": is not a file; give a point cache");
+    if (!std::ifstream(path)) throw InputError(path + ": cannot be read; check the permissions");
     file = Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
     if (!file.valid())
       throw InputError(

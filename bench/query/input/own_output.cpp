@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 constexpr std::uintmax_t kMostCompressed = std::uintmax_t{1}
                                            << 26;  // of a compressed file that is looked into
 constexpr std::size_t kMostUnpacked = std::size_t{1} << 28;
-constexpr std::size_t kBeginning = 4096;  // in which a file of ours names its schema
 
 struct Kind {
   std::string_view schema, is, then;  // FILE stands for the path
@@ -52,15 +51,12 @@ std::string content(const fs::path& path) {
       return "";  // whoever opens the file says what is wrong with it
     }
   }
-  std::string beginning(kBeginning, '\0');
-  file.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
-  beginning.resize(static_cast<std::size_t>(file.gcount()));
-  return beginning;
+  if (fs::file_size(path, error) > kMostUnpacked || error) return "";
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// The schema that the beginning of a JSON file names; empty for other files.
+// The schema that a JSON file names, before or behind all that it holds; empty for other files.
 std::string schema_in(std::string_view text) {
-  text = text.substr(0, kBeginning);
   const std::size_t brace = text.find_first_not_of(" \t\r\n");
   if (brace == std::string_view::npos || text[brace] != '{') return "";
   const std::size_t key = text.find("\"schema\"");

@@ -22,6 +22,11 @@ TEST(OwnOutput, IsNamedWithTheCommandThatTakesIt) {
   EXPECT_NE(
       said("r.json", "\n {\n \"a\": 1,\n \"schema\" : \"cscd.query/3\"}").find("is an answer of cscd query"),
       std::string::npos);
+  EXPECT_NE(
+      said("long.json", R"({"intervals": ")" + std::string(1 << 20, 'x') + R"(", "schema": "cscd.query/3"})")
+          .find("is an answer of cscd query"),
+      std::string::npos)
+      << "the schema stands behind all intervals";
   EXPECT_NE(said("r.json.gz", gzipped(R"({"schema": "cscd.scale/1"})")).find("is a record of cscd scale"),
             std::string::npos);
   EXPECT_NE(said("m.json.gz", gzipped(R"({"schema": "cscd.motion/1"})"))

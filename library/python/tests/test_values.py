@@ -40,7 +40,7 @@ class Values(unittest.TestCase):
         self.assertTrue(answers[0].contacts and len(answers[1].start_crossings) and answers[2].overlaps[0].regions)
         self.assertEqual([answer.verdict == "clear" for answer in answers[3:]], [False, True])
         for answer in answers:
-            for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1):
+            for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
                 self.assertTrue(same(pickle.loads(pickle.dumps(answer, protocol)), answer), answer)
             self.assertTrue(same(copy.deepcopy(answer), answer), answer)
         self.assertFalse(same(answers[0], answers[1]))
