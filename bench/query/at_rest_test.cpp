@@ -148,24 +148,54 @@ TEST_F(AtRest, OnePoseIsAnsweredByItself) {
   const json figure = answer("still.glb");
   EXPECT_EQ(figure["one_pose"], true);
   EXPECT_EQ(figure["summary"]["verdict"], "intersects_at_start") << "its eyes lie in its head";
+
+  // A clip of several frames that moves nothing is a pose too.
+  scenes::Character kept = scenes::bending_tube();
+  for (auto& key : kept.animations[0].channels[0].rotations)
+    key.value = kept.animations[0].channels[0].rotations[0].value;
+  put("kept.glb", scenes::to_glb(kept));
+  EXPECT_EQ(run("cscd query kept.glb").status, 0);
+  EXPECT_EQ(
+      sentence(answer("kept.glb --clip 0")),
+      "kept.glb, clip 'bend' (the only one), does not move in frames 0 to 30, and does not touch itself.");
   EXPECT_TRUE(answer("figure.glb --clip walk")["summary"]["verdict"] == "clear");
 }
 
-// Two faces with the same corners share all that they have.
-TEST_F(AtRest, IdenticalTrianglesAreSaid) {
-  const std::string twice = "f 1 3 4\nf 4 1 3\nf 1 4 3\n";
-  put_frames({1.5, 1.25});
-  for (const char* file : {"f.0.obj", "f.1.obj"}) put(file, text(file) + twice);
+// Of faces with the same corners one is kept: with two, no depth would be known. Mutation: all are kept.
+TEST_F(AtRest, IdenticalTrianglesAreLeftOutAndSaid) {
+  for (const std::string twice : {"f 1 3 4\nf 4 1 3\n", "f 1 4 3\nf 4 3 1\n"}) {
+    SCOPED_TRACE(twice);
+    put_frames({1.5, 1.25, 0.75});
+    const json plain = answer("f.0.obj");
+    for (const char* file : {"f.0.obj", "f.1.obj", "f.2.obj"}) put(file, text(file) + twice);
+    const json found = answer("f.0.obj");
+    EXPECT_EQ(found["import"]["duplicate_triangles"], 2);
+    EXPECT_EQ(found["identical_triangles"], 0);
+    EXPECT_EQ(found["summary"]["events"], plain["summary"]["events"]);
+    EXPECT_EQ(status("--fail-deeper-than 0.2"), 3);
+    EXPECT_EQ(status("--fail-deeper-than 0.3"), 0);
+    for (const char* command : {"query", "inspect"})
+      EXPECT_TRUE(has(run("cscd " + std::string(command) + " f.0.obj").out, "2 duplicate triangles"))
+          << command;
+  }
+}
+
+// Mutation: a depth of which only a bound is known passes.
+TEST_F(AtRest, ADepthThatIsNotKnownFailsUnlessItsBoundIsSmall) {
+  put_frames({1, 1.5});
+  const auto asked = run("cscd query f.0.obj --fail-deeper-than 0.1");
+  EXPECT_EQ(asked.status, 3);
+  EXPECT_TRUE(has(asked.out, "fails, because a depth is not known: at most ")) << asked.out;
+  EXPECT_EQ(status("--fail-deeper-than 0.5"), 0);
+}
+
+// Mutation: what touches beside what crosses is said to be counted.
+TEST_F(AtRest, WhatTouchesBesideWhatCrossesIsLeftOutWithIt) {
+  put_frames({0.999999, 0.9, 0.75});
   const json found = answer("f.0.obj");
-  EXPECT_EQ(found["identical_triangles"], 3) << "of four in one place";
-  EXPECT_EQ(found["summary"]["verdict"], "clear");
-  for (const char* command : {"query", "inspect"})
-    EXPECT_TRUE(has(run("cscd " + std::string(command) + " f.0.obj").out,
-                    "3 triangles have the same three corners as another one: two such are never held"))
-        << command;
-  put_frames({1.5, 1.25});
-  EXPECT_EQ(answer("f.0.obj")["identical_triangles"], 0);
-  EXPECT_FALSE(has(run("cscd query f.0.obj").out, "same three corners"));
+  EXPECT_EQ(found["rest_crossings"]["pairs"], found["intervals"][0]["left_out"]["start_pairs"]);
+  EXPECT_EQ(found["rest_crossings"]["touching"], 0);
+  EXPECT_EQ(found["intervals"][0]["start_pairs_total"], 0);
 }
 
 }  // namespace

@@ -68,8 +68,21 @@ void Session::find_rest_crossings(const std::string& name, std::span<const Vec3>
           " pairs of triangles cross at rest, too many to leave out; repair the surface, or pass "
           "--keep-rest-crossings");
     left_out_ = RestCrossings(setup_.mesh, rest_.crossing);
+    take_touching_of_crossing();
   }
   rest_ms_ = searching.milliseconds();
+}
+
+// What touches where something crosses is left out with it, and so counts as crossing.
+void Session::take_touching_of_crossing() {
+  std::vector<CrossingPair>&crossing = rest_.crossing.pairs, &touching = rest_.touching.pairs;
+  const auto explained = std::ranges::stable_partition(
+      touching, [&](const CrossingPair& pair) { return !left_out_.explains(pair); });
+  crossing.insert(crossing.end(), explained.begin(), explained.end());
+  std::ranges::sort(crossing);
+  rest_.crossing.total += explained.size();
+  rest_.touching.total -= explained.size();
+  touching.erase(explained.begin(), explained.end());
 }
 
 Session::PreparedStrategy Session::make(const Strategy& strategy) const {

@@ -92,9 +92,9 @@ class Session {
   double preparation_ms() const { return preparation_ms_ + rest_ms_; }
   // How many triangles the preparation of the set-up did not know.
   std::size_t new_triangles() const { return main_.new_triangles; }
-  // The triangles that cross at rest, which are left out of answers until they part; and those that only
-  // touch at rest, which are not left out. Where the options keep everything, all that meet at rest count as
-  // crossing.
+  // The triangles that cross at rest, which are left out of answers until they part, with those that
+  // touch beside them; and those that only touch at rest, which are not left out. Where the options keep
+  // everything, all that meet at rest count as crossing.
   const Crossings& rest_crossings() const { return rest_.crossing; }
   const Crossings& rest_touching() const { return rest_.touching; }
   int threads() const { return main_.threads; }
@@ -110,6 +110,7 @@ class Session {
   // Finds what crosses at rest, and what that explains. A main strategy that sees starts has to be made
   // before.
   void find_rest_crossings(const std::string& name, std::span<const Vec3> rest);
+  void take_touching_of_crossing();
   PreparedStrategy& fallback();
   // Whether only the contacts of the earliest time are asked of strategies.
   bool first_only() const { return options_.first && left_out_.empty() && options_.ignored == nullptr; }

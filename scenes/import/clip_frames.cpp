@@ -114,8 +114,12 @@ std::size_t choose_clip(const Character& character, const std::vector<bool>& use
     if (movement == Movement::between_frames && !between) between = i;
   }
   if (between) return *between;
-  const bool are_poses = std::ranges::all_of(
-      all, [fps](const Animation& animation) { return frames_of(animation.seconds, fps) < 2; });
+  // A file is one pose where its clips move nothing of it. Where they move other parts than the chosen one,
+  // it is none, and the user should know that the choice is at fault.
+  const std::vector<bool> whole(used.size(), true);
+  const bool are_poses = std::ranges::all_of(all, [&](const Animation& animation) {
+    return movement_of(character, animation, whole, diagonal, fps) == Movement::none;
+  });
   if (options.from_bind_pose || (options.one_pose && are_poses)) return 0;
   throw InputError(
       "none of its clips moves the surface: " + listed_clips(character) + ", at " + exact_text(fps) +

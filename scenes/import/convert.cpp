@@ -8,6 +8,7 @@
 #include "scenes/character/pose.h"
 #include "scenes/character/skeleton.h"
 #include "scenes/character/source_map.h"
+#include "scenes/character/weld.h"
 #include "scenes/clip/point_cache.h"
 #include "scenes/exchange/mesh_sequence.h"
 #include "scenes/exchange/sequence_files.h"
@@ -150,35 +151,30 @@ void require_simple(const ImportOptions& options) {
         "model files but --fps");
 }
 
-// The triangles with three corners, and the vertices that they have, in the order of the file.
+// The triangles with three corners, each set of corners once, and the vertices that they have, in the order
+// of the file. Of two triangles with the same corners each edge has a third neighbour, at which no side of
+// the surface is inside, so that no depth would be known.
 struct Surface {
-  std::vector<Triangle> triangles;
+  WeldedTriangles faces;
   std::vector<std::int32_t> vertex;  // [vertices]: number in the file
   SourceMap sources;
-  std::size_t collapsed = 0;
 };
 
 Surface surface_of(const MeshSequence& sequence) {
   Surface surface;
+  const auto all = sequence.triangles();
   std::vector<std::int32_t> number(sequence.vertex_count(), -1);
-  for (const auto& corners : sequence.triangles())
+  for (const auto& corners : all)
     for (const std::int32_t v : corners) number[static_cast<std::size_t>(v)] = 0;
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (number[v] < 0) continue;
     number[v] = static_cast<std::int32_t>(surface.vertex.size());
     surface.vertex.push_back(static_cast<std::int32_t>(v));
   }
-  for (const auto& corners : sequence.triangles()) {
-    if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) {
-      ++surface.collapsed;
-      continue;
-    }
-    Triangle triangle;
-    for (std::size_t k = 0; k < 3; ++k) triangle[k] = VertexId{number[static_cast<std::size_t>(corners[k])]};
-    surface.triangles.push_back(triangle);
-    surface.sources.triangle.push_back({0, corners});
-  }
-  if (surface.triangles.empty()) throw InputError("has no triangle with three corners; export it again");
+  surface.faces = welded(all, number);
+  if (surface.faces.triangles.empty())
+    throw InputError("has no triangle with three corners; export it again");
+  for (const std::size_t source : surface.faces.source) surface.sources.triangle.push_back({0, all[source]});
   surface.sources.bone.assign(surface.vertex.size(), -1);
   return surface;
 }
@@ -239,7 +235,7 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
         "frames "
         "lie beside it");
   const Surface surface = surface_of(*sequence);
-  const TriangleMesh mesh(surface.triangles, surface.vertex.size());
+  const TriangleMesh mesh(surface.faces.triangles, surface.vertex.size());
   if (frames > limits.frames || frames * surface.vertex.size() * sizeof(Vec3) > limits.cache_bytes)
     throw InputError("its " + std::to_string(frames) + " frames of " + std::to_string(surface.vertex.size()) +
                      " vertices are more than the " + std::to_string(limits.frames) + " frames or " +
@@ -256,18 +252,19 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
       {"", 0, static_cast<double>(frames - 1) / report.fps, 0, frames, 0, sequence->first_frame()});
   report.parts.push_back({file.stem().string(), "the surface", -1, -1});
   report.chosen_clip = options.survey ? -1 : 0;
-  report.collapsed_triangles = surface.collapsed;
+  report.collapsed_triangles = surface.faces.collapsed;
+  report.duplicate_triangles = surface.faces.duplicate;
   report.components = static_cast<std::size_t>(mesh.component_count());
   for (std::size_t c = 0; c < report.components; ++c) report.chosen_components.push_back(c);
   if (options.survey) report.component_bones.assign(report.components, 0);
-  report.chosen_triangles = surface.triangles.size();
+  report.chosen_triangles = surface.faces.triangles.size();
   report.notes = sequence->notes();
   if (std::string loose = note_on_loose_vertices(sequence->vertex_count(), sequence->triangles());
       !loose.empty())
     report.notes.push_back(std::move(loose));
   write_source_map(surface.sources, sources);
 
-  PointCacheWriter writer(cache, {surface.triangles, surface.vertex.size(), {}, false}, false);
+  PointCacheWriter writer(cache, {surface.faces.triangles, surface.vertex.size(), {}, false}, false);
   std::vector<Vec3> all, used(surface.vertex.size());
   for (std::size_t frame = 0; frame < (options.survey ? 2 : std::max<std::size_t>(2, frames)); ++frame) {
     sequence->read_frame(std::min(frame, frames - 1), all);  // a cache has two frames, those of one pose too

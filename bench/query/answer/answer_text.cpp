@@ -281,7 +281,7 @@ Sentences sentences(const ClipAnswer& answer) {
                           [](const NamePair& both, std::size_t count) {
                             return with_itself_or_in(both, " on ") + many(count, "pair");
                           }) +
-                   "; counted, as nothing lies in it (--ignore A:B leaves two parts out)";
+                   "; counted (--ignore A:B leaves two parts out)";
   std::string answered;
   for (const auto& [name, count] : s.strategies)
     answered += (answered.empty() ? "" : ", ") + name +
@@ -317,15 +317,23 @@ std::string identical_text(std::size_t triangles) {
          " the same three corners as another one: two such are never held against each other";
 }
 
+namespace {
+
+// Whether more is known of a depth than what it does not exceed.
+bool is_known(const CrossingDepth& depth) {
+  constexpr double kRounding = 1e-9;  // a share of the bound below which a depth is nothing but rounding
+  return depth.lower > kRounding * depth.upper;
+}
+
+}  // namespace
+
 std::string event_text(const Input& input, const OverlapEvent& event) {
   std::string out =
       event.names.first +
       (event.names.first == event.names.second ? " in itself: " : " in " + event.names.second + ": ");
   const std::string most = "at most " + distance_text(input, event.depth.upper);
-  constexpr double kRounding = 1e-9;  // a share of the bound below which a depth is nothing but rounding
-  out += event.depth.lower > kRounding * event.depth.upper
-             ? distance_text(input, event.depth.lower) + " deep (" + most + ")"
-             : most + " deep, depth not known";
+  out += is_known(event.depth) ? distance_text(input, event.depth.lower) + " deep (" + most + ")"
+                               : most + " deep, depth not known";
   if (event.at_rest) out += ", deeper than at rest (" + distance_text(input, *event.at_rest) + ")";
   if (event.vertices > 0) out += ", " + many(event.vertices, "vertex");
   const auto frame = [&](std::size_t interval) { return frame_text(frame_of(input, {interval, 0})); };
@@ -339,15 +347,26 @@ DepthCheck check_depth(const ClipAnswer& answer, const WrittenLength& most) {
   const std::string limit = "--fail-deeper-than " + length_text(most, answer.input.thickness.edge) + ": ";
   // A start of which nothing is known may be too deep.
   if (answer.not_measured > 0) return {true, limit + "fails, because some starts were not measured"};
-  double lower = 0, upper = 0;
-  for (const OverlapEvent& event : answer.events)
+  // Triangles with the same three corners leave bounds of depths in doubt.
+  const bool is_bound_in_doubt = identical_triangles(answer.input.mesh) > 0;
+  double lower = 0, upper = 0, unknown = -1;
+  for (const OverlapEvent& event : answer.events) {
     lower = std::max(lower, event.depth.lower), upper = std::max(upper, event.depth.upper);
+    if (!is_known(event.depth) && (is_bound_in_doubt || event.depth.upper > length))
+      unknown = std::max(unknown, event.depth.upper);
+  }
   if (lower > length)
     return {true, limit + "fails, because something lies deeper: " + distance_text(answer.input, lower)};
+  if (unknown >= 0)
+    return {true, limit + "fails, because a depth is not known" +
+                      (is_bound_in_doubt ? ", as triangles have the same three corners"
+                                         : ": at most " + distance_text(answer.input, unknown))};
   std::string text = limit + "passes: nothing is known to lie deeper";
   if (upper > length) text += ", and something may lie up to " + distance_text(answer.input, upper) + " deep";
   if (answer.rest.total > 0 && answer.rest_left_out)
     text += "; what crosses at rest counts where it lies deeper than there";
+  if (answer.rest_left_out && !at_rest(answer).coinciding.empty())
+    text += "; how far copies that lie on each other at rest slide before they part is not measured";
   return {false, text};
 }
 

@@ -21,8 +21,9 @@ std::string brief_clip_text(const ClipAnswer& answer);
 // Of what a verdict does not speak: "what crosses at rest", "what is ignored".
 std::vector<std::string> verdict_exceptions(const ClipAnswer& answer);
 
-// What --fail-deeper-than finds. It fails where something certainly lies deeper than the length, and where a
-// start was not measured; the text says why, or what is not known.
+// What --fail-deeper-than finds. It fails where something certainly lies deeper than the length, where
+// a depth of which only a bound is known may be larger, and where a start was not measured; the text says
+// why, or what is not known.
 struct DepthCheck {
   bool fails;
   std::string text;
