@@ -257,7 +257,8 @@ Sentences sentences(const ClipAnswer& answer) {
     const std::string counted = answer.rest_left_out ? "; left out of " + many(s.with_left_out, "interval") +
                                                            ", with " + many(s.left_out_contacts, "contact") +
                                                            " (--keep-rest-crossings counts both)"
-                                                     : "; counted, as asked";
+                                : input.is_one_pose ? "; counted"
+                                                    : "; counted, as asked";
     if (!rest.crossing.empty())
       out.rest = "crosses " + at +
                  listed(rest.crossing,
