@@ -4,9 +4,11 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/number_text.h"
+#include "core/base/sort_unique.h"
 
 namespace cscd::scenes {
 namespace {
@@ -14,12 +16,14 @@ namespace {
 // A clip ends with a whole frame if its length differs from a whole number of frames by less than this.
 // Times in files are single precision, so their lengths are seldom exact.
 constexpr double kNearFrame = 1e-3;
-// At most this many poses of a clip are tried to see whether the clip moves the surface.
+// At most this many frames of a clip, and spans between its keys, are looked at to see whether the clip moves
+// the surface.
 constexpr std::size_t kMostLooks = 4096;
-// So many times between two frames a clip is looked at, too, at the fractional parts of multiples of this
-// share of a frame. A motion that comes back to one pose in every frame, as a wheel of one turn a frame does,
-// comes back at none of them, because no small multiple of it is whole: (3 - sqrt(5)) / 2.
-constexpr std::size_t kLooksBetween = 8;
+// So many times between two frames, and between two keys, a clip is looked at, too, at the fractional parts
+// of multiples of this share of the span. A motion that comes back to one pose in every frame, as a wheel of
+// one turn a frame does, comes back at none of them, because no small multiple of it is whole:
+// (3 - sqrt(5)) / 2.
+constexpr std::size_t kLooksBetween = 8, kLooksBetweenKeys = 4;
 constexpr double kShareBetween = 0.381966011250105;
 // Movement below this share of the diagonal counts as rounding.
 constexpr double kMoves = 1e-9;
@@ -27,6 +31,91 @@ constexpr double kMoves = 1e-9;
 Moment moment_at(const Character& character, const Animation& animation, double seconds) {
   const double time = animation.start + seconds;
   return {pose_at(character, animation, time), weights_at(character, animation, time)};
+}
+
+double share_between(std::size_t k) {
+  const double share = static_cast<double>(k) * kShareBetween;
+  return share - std::floor(share);
+}
+
+template <class Value>
+bool same(const Value& a, const Value& b) {
+  return a == b;
+}
+bool same(const Quaternion& a, const Quaternion& b) {
+  return a.w == b.w && a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+// A span of the file's time line in which some value may change.
+using KeySpan = std::pair<double, double>;
+
+template <class Value>
+void add_changes(const std::vector<Key<Value>>& keys, std::vector<KeySpan>& out) {
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    const Key<Value>&a = keys[i - 1], &b = keys[i];
+    const bool bends =
+        a.next == Between::cubic && !(same(a.leaving, kFlat<Value>) && same(b.arriving, kFlat<Value>));
+    if (bends || !same(a.value, b.value)) out.emplace_back(a.time, b.time);
+  }
+}
+
+// A curve that repeats its keys changes in each of its repetitions that the clip shows, of which
+// no more are taken than are looked at.
+void add_changes(const Curve& curve, const KeySpan& clip, std::vector<KeySpan>& out) {
+  std::vector<KeySpan> once;
+  add_changes(curve.keys, once);
+  const auto repeats = [](Beyond kind) { return kind != Beyond::hold && kind != Beyond::straight; };
+  const Extrapolation& beyond = curve.beyond;
+  const double length = beyond.last - beyond.first;
+  double first = 0, last = 0;
+  if (length > 0 && repeats(beyond.before)) first = std::floor((clip.first - beyond.first) / length);
+  if (length > 0 && repeats(beyond.after)) last = std::ceil((clip.second - beyond.last) / length);
+  const double most = std::ceil(static_cast<double>(kMostLooks) / static_cast<double>(once.size() + 1));
+  first = std::clamp(first, -most, 0.0);
+  last = std::clamp(last, 0.0, most);
+  for (double k = first; k <= last; ++k) {
+    const bool backwards = std::fmod(k, 2) != 0 && (k < 0 ? beyond.before : beyond.after) == Beyond::mirror;
+    for (const auto& [from, to] : once)
+      if (backwards)
+        out.emplace_back(beyond.first + beyond.last - to + k * length,
+                         beyond.first + beyond.last - from + k * length);
+      else
+        out.emplace_back(from + k * length, to + k * length);
+  }
+}
+
+// The seconds after a clip's start at which a motion shows that its keys make, however short it is: those of
+// keys beside which a value changes, and some between them. Sorted. Of very many spans between keys, some
+// are taken.
+std::vector<double> seconds_of_changes(const Animation& animation) {
+  const KeySpan clip{animation.start, animation.start + animation.seconds};
+  std::vector<KeySpan> spans;
+  const auto add = [&](const Curve& curve) { add_changes(curve, clip, spans); };
+  for (const Channel& channel : animation.channels) {
+    add_changes(channel.moves, spans);
+    add_changes(channel.rotations, spans);
+    add_changes(channel.scales, spans);
+    for (const Layered<3>* numbers :
+         {&channel.move_components, &channel.scale_components, &channel.angles.degrees})
+      for_each_curve(*numbers, add);
+  }
+  for (const MorphChannel& morph : animation.morphs)
+    for (const Layered<1>& weight : morph.weights) for_each_curve(weight, add);
+  for (const Curve& weight : animation.layer_weights) add(weight);
+  sort_unique(spans);
+  std::vector<double> seconds;
+  const std::size_t taken = std::min(spans.size(), kMostLooks);
+  for (std::size_t i = 0; i < taken; ++i) {
+    const auto& [first, last] = spans[i * spans.size() / taken];
+    const double from = std::max(first, clip.first), to = std::min(last, clip.second);
+    if (!(from < to)) continue;
+    seconds.push_back(from - clip.first);
+    seconds.push_back(to - clip.first);
+    for (std::size_t k = 1; k <= kLooksBetweenKeys; ++k)
+      seconds.push_back(from - clip.first + share_between(k) * (to - from));
+  }
+  sort_unique(seconds);
+  return seconds;
 }
 
 std::string listed_clips(const Character& character) {
@@ -44,31 +133,33 @@ std::string lower(std::string text) {
 // What a clip does to the vertices in use.
 enum class Movement { none, between_frames, at_frames };
 
-// Looks at the frames of a clip, and where these show one pose, between them.
+// Looks at the frames of a clip, and where these show one pose, at its keys and between frames.
 Movement movement_of(const Character& character, const Animation& animation, const std::vector<bool>& used,
                      double diagonal, double fps) {
   if (animation.channels.empty() && animation.morphs.empty()) return Movement::none;
   const std::size_t frames = std::min(frames_of(animation.seconds, fps), kMostLooks);
   std::vector<Vec3> first, now;
-  const auto skin_at = [&](double frame, std::vector<Vec3>& out) {
-    const double share = frames < 2 ? 0 : frame / static_cast<double>(frames - 1);
-    const Moment moment = moment_at(character, animation, share * animation.seconds);
+  const auto skin_at = [&](double seconds, std::vector<Vec3>& out) {
+    const Moment moment = moment_at(character, animation, seconds);
     skin(character, moment.pose, moment.weights, out);
   };
-  const auto moves_at = [&](double frame) {
-    skin_at(frame, now);
+  const auto moves_at = [&](double seconds) {
+    skin_at(seconds, now);
     for (std::size_t v = 0; v < first.size(); ++v)
       if (used[v] && (now[v] - first[v]).cwiseAbs().maxCoeff() > kMoves * diagonal) return true;
     return false;
   };
+  const auto second_of = [&](double frame) {
+    return frame / static_cast<double>(frames - 1) * animation.seconds;
+  };
   skin_at(0, first);
   for (std::size_t i = 1; i < frames; ++i)
-    if (moves_at(static_cast<double>(i))) return Movement::at_frames;
+    if (moves_at(second_of(static_cast<double>(i)))) return Movement::at_frames;
+  if (frames < 2) return Movement::none;
+  if (std::ranges::any_of(seconds_of_changes(animation), moves_at)) return Movement::between_frames;
   for (std::size_t k = 1, looks = 0; k <= kLooksBetween; ++k)
-    for (std::size_t i = 0; i + 1 < frames && looks < kMostLooks; ++i, ++looks) {
-      const double share = static_cast<double>(k) * kShareBetween;
-      if (moves_at(static_cast<double>(i) + share - std::floor(share))) return Movement::between_frames;
-    }
+    for (std::size_t i = 0; i + 1 < frames && looks < kMostLooks; ++i, ++looks)
+      if (moves_at(second_of(static_cast<double>(i) + share_between(k)))) return Movement::between_frames;
   return Movement::none;
 }
 

@@ -266,6 +266,60 @@ TEST_F(Convert, TakesTheFirstClipThatMovesTheSurface) {
   EXPECT_LT((clip.frame(30).positions[9] - clip.frame(0).positions[9] - Vec3(0, 0.5, 0)).norm(), 1e-12);
 }
 
+// A tube whose end moves aside and comes back between two frames, at keys of several kinds. Mutation: the
+// clip is looked at in frames and at fixed shares of them alone, or the keys of one kind are passed over.
+TEST_F(Convert, TakesAClipThatMovesForTheShortestTimeBetweenFrames) {
+  const auto moves = [&](const auto& set, double begin, double end) {
+    Character tube = bending_tube();
+    tube.animations[0].start = 2;
+    tube.animations[0].seconds = 3;
+    Channel& channel = tube.animations[0].channels[0];
+    channel.rotations.clear();
+    set(tube.animations[0], 2 + begin, 2 + end);
+    converted(tube);
+    return report.chosen_clip == 0 && std::ranges::any_of(report.notes, [](const std::string& note) {
+             return says(note, "moves between its frames alone");
+           });
+  };
+  const Vec3 here(0, 0, 0), aside(0, 1, 0);
+  for (const auto& [begin, end] : {std::pair(0.501, 0.503), {0.5151, 0.5152}, {1.70001, 1.70002}}) {
+    const auto shown = [&, from = begin, to = end](const auto& set) { return moves(set, from, to); };
+    EXPECT_TRUE(shown([&](Animation& clip, double from, double to) {
+      clip.channels[0].moves = {{2, here}, {from, here}, {(from + to) / 2, aside}, {to, here}, {5, here}};
+    }));
+    EXPECT_TRUE(shown([&](Animation& clip, double from, double to) {
+      clip.channels[0].moves = {
+          {2, here, Between::constant}, {from, aside, Between::constant}, {to, here, Between::constant}};
+    }));
+    // Both keys have one value, and the tangents lead away from it and back.
+    EXPECT_TRUE(shown([&](Animation& clip, double from, double to) {
+      clip.channels[0].moves = {{from, here, Between::cubic, here, 1e6 * aside},
+                                {to, here, Between::line, -1e6 * aside, here}};
+    }));
+    // Two whole turns, whose ends and middle are one pose.
+    EXPECT_TRUE(shown([&](Animation& clip, double from, double to) {
+      clip.channels[0].angles.degrees.base.axis[2].keys = {{from, 0}, {to, 720}};
+    }));
+  }
+  // The keys lie before the clip, which shows a repetition of them.
+  for (const Beyond kind : {Beyond::repeat, Beyond::mirror})
+    EXPECT_TRUE(moves(
+        [&](Animation& clip, double, double) {
+          Curve& curve = clip.channels[0].angles.degrees.base.axis[2];
+          curve.keys = {{-2, 0}, {0.501, 0}, {0.5015, 90}, {0.502, 0}, {2, 0}};
+          curve.beyond = {.before = Beyond::hold, .after = kind, .first = -2, .last = 2};
+        },
+        0, 0));
+  EXPECT_TRUE(says(test::refusal([&] {
+                     moves(
+                         [&](Animation& clip, double, double) {
+                           clip.channels[0].moves = {{2, here}, {5, here}};
+                         },
+                         0, 0);
+                   }),
+                   "none of its clips moves the surface"));
+}
+
 TEST_F(Convert, ComparesNamesOfClipsWithoutCaseWhereThatIsUnique) {
   Character tube = bending_tube();
   const Animation bend = tube.animations[0];
