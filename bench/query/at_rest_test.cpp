@@ -53,6 +53,9 @@ TEST_F(AtRest, WhatLiesOnEachOtherIsAnAnswer) {
     put_frames({1, 1.5, 1.25, 0.75, 0.751}, inset);
     const json lifted = answer("f.0.obj");
     EXPECT_FALSE(has(sentence(lifted), "does not touch")) << sentence(lifted);
+    EXPECT_TRUE(has(sentence(lifted), "first at frame 0 (0 s): the surface, component 0 touches"))
+        << sentence(lifted);
+    EXPECT_TRUE(has(sentence(lifted), "; once it had parted, again at frame 2.5 (")) << sentence(lifted);
     EXPECT_EQ(lifted["intervals"][1]["verdict"], "clear");
     EXPECT_EQ(lifted["intervals"][2]["verdict"], "touches");
     EXPECT_EQ(lifted["intervals"][2]["time"], 0.5);

@@ -206,11 +206,20 @@ std::string verdict_predicate(const ClipAnswer& answer) {
   if (close > 0)
     text += (text.empty() ? "comes within " : " and comes within ") + input.thickness.asked.thickness.text +
             " of itself in " + (text.empty() ? of_intervals(close, s) : std::to_string(close) + " more");
+  const auto verb = [&](bool crosses) {
+    return crosses ? "crosses" : is_thick ? "comes close to" : "touches";
+  };
   const AnswerSummary::Meeting& first = *s.first;
-  return text + apart + ", first at " + moment_text(input, first.moment) + ": " +
-         meeting_text(first.names, first.crosses ? "crosses"
-                                   : is_thick    ? "comes close to"
-                                                 : "touches");
+  // What only lies on something at rest touches it in the first frame, and the next time it meets is news.
+  const bool at_start = first.moment.interval == 0 && first.moment.time == 0;
+  const bool only_touches = at_start && first.crosses && input.clip->header().rest.empty() &&
+                            answer.rest.total == 0 && answer.rest_touching.total > 0;
+  text += apart + ", first at " + moment_text(input, first.moment) + ": " +
+          meeting_text(first.names, verb(first.crosses && !only_touches));
+  if (const auto& again = s.first_after_parting; at_start && again)
+    text += "; once it had parted, again at " + moment_text(input, again->moment) + ": " +
+            meeting_text(again->names, verb(again->crosses));
+  return text;
 }
 
 // What is said below the verdict, without full stops; empty where there is nothing to say.

@@ -64,6 +64,7 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
   query_ms += answer.report.ms.total();
   load_ms += answer.load_ms;
   wall_ms += answer.wall_ms;
+  if (answer.verdict == IntervalVerdict::clear && first) parted_ = true;
   if (answer.verdict == IntervalVerdict::clear || answer.verdict == IntervalVerdict::undecided) return;
 
   const bool crosses = answer.verdict == IntervalVerdict::intersects_at_start;
@@ -78,6 +79,7 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
   const auto meet = [&](TriangleId a, TriangleId b) {
     std::string x = names.place_of(a), y = names.place_of(b);
     if (!first) first = Meeting{moment, crosses, {x, y}};
+    if (parted_ && !first_after_parting) first_after_parting = Meeting{moment, crosses, {x, y}};
     here.insert(in_order(std::move(x), std::move(y)));
   };
   for (const CrossingPair& pair : answer.start.pairs) meet(pair.first, pair.second);

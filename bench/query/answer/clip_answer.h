@@ -43,6 +43,8 @@ struct AnswerSummary {
     NamePair names;
   };
   std::optional<Meeting> first;
+  // The first one after an interval in which nothing met, where something had met before.
+  std::optional<Meeting> first_after_parting;
   // The interval in which most goes wrong: most pairs of triangles that cross at its start, or, where none
   // cross anywhere, most contacts.
   struct Worst {
@@ -73,6 +75,8 @@ struct AnswerSummary {
 
  private:
   void add_ignored(const IntervalAnswer& answer, const SurfaceNames& names);
+
+  bool parted_ = false;  // an interval after `first` is clear
 };
 
 // Whether anything touches, crosses, or comes within the thickness.
