@@ -27,8 +27,10 @@ constexpr double kRoom = 1.25;
 constexpr int kWaits = 4, kWaitsForSigns = 256;
 // A bound for all vertices at once that is too large by less than this is looked at vertex by vertex.
 constexpr double kLooser = 4;
-// Below this share of the resolution shorter pieces are not tried: what is nearer lies on each other.
+// What is nearer than this share of the resolution mostly lies on each other for long, and shorter pieces say
+// no more of it. A few are tried all the same: what flies straight through a face is as near for a moment.
 constexpr double kFinest = 1e-9;
+constexpr std::size_t kPiecesLyingOn = 12;
 // No square of a length below this overflows.
 constexpr double kMostLength = 1e150;
 
@@ -206,8 +208,10 @@ void TrueMotion::say_close(double from, double to, double within, const std::vec
 }
 
 bool TrueMotion::look_on(double within) {
-  if (!looks_on_) more_ = std::min(options_.more_pieces, more_left_);
-  if (more_ == 0 || within <= kFinest * options_.resolution) return false;
+  const bool lies_on = within <= kFinest * options_.resolution;
+  if (!looks_on_)
+    more_ = std::min({lies_on ? kPiecesLyingOn : options_.more_pieces, options_.more_pieces, more_left_});
+  if (more_ == 0) return false;
   --more_, --more_left_;
   return true;
 }

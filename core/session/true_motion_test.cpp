@@ -195,5 +195,25 @@ TEST(TrueMotion, LooksCloserThanTheResolutionWhileItPays) {
   EXPECT_EQ(TrueMotion(paths, setup, kDrvbcFastComplete, options).answer(0, 1).verdict, TrueVerdict::close);
 }
 
+// Paths that leave their lines by nothing but rounding.
+struct Straight : Sliding {
+  using Sliding::Sliding;
+  void deviations(double, double, std::span<const VertexId>, std::span<double> out) const override {
+    std::ranges::fill(out, 0);
+  }
+};
+
+// What flies straight through a surface within one part is told at once as near as what lies on it. Mutation:
+// nothing so near is looked at in shorter pieces.
+TEST(TrueMotion, TellsWhatFliesStraightThrough) {
+  const TwoOctahedra two;
+  const StrategyInput setup{two.mesh, two.shape.positions, nullptr, *find_elementary_test("filtered_exact")};
+  const Straight paths(two.shape.positions, -3, 4);
+  TrueMotionOptions options{.resolution = 0.01, .coarse = 0.05};
+  EXPECT_EQ(TrueMotion(paths, setup, kDrvbcFastComplete, options).answer(0, 1).verdict, TrueVerdict::touches);
+  options.more_pieces = 0;
+  EXPECT_EQ(TrueMotion(paths, setup, kDrvbcFastComplete, options).answer(0, 1).verdict, TrueVerdict::close);
+}
+
 }  // namespace
 }  // namespace cscd
