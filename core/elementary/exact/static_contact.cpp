@@ -188,7 +188,7 @@ bool part_by_plane(Triple& plane, Triple& other) {
   const auto [least, most] = std::ranges::minmax(side);
   if (least >= 0 || most <= 0) return false;
   const int alone = std::ranges::count(side, 1) == 1 ? 1 : -1;
-  std::ranges::rotate(other, other.begin() + (std::ranges::find(side, alone) - side.begin()));
+  std::rotate(other.begin(), other.begin() + (std::ranges::find(side, alone) - side.begin()), other.end());
   if (alone < 0) std::swap(plane[1], plane[2]);
   return true;
 }
