@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <utility>
 
-#include "core/base/sort_unique.h"
 #include "core/base/disjoint_sets.h"
+#include "core/base/sort_unique.h"
 #include "core/crossing/self_winding.h"
 
 namespace cscd {

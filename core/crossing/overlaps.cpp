@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/sort_unique.h"
 #include "core/base/disjoint_sets.h"
+#include "core/base/sort_unique.h"
 #include "core/crossing/reach.h"
 #include "core/crossing/sheet_distance.h"
 #include "core/geometry/unit_scale.h"

@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <fstream>
 #include <array>
+#include <fstream>
 #include <limits>
 #include <string>
 
