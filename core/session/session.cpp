@@ -76,13 +76,14 @@ void Session::find_rest_crossings(const std::string& name, std::span<const Vec3>
 // What touches where something crosses is left out with it, and so counts as crossing.
 void Session::take_touching_of_crossing() {
   std::vector<CrossingPair>&crossing = rest_.crossing.pairs, &touching = rest_.touching.pairs;
-  const auto explained = std::ranges::stable_partition(
-      touching, [&](const CrossingPair& pair) { return !left_out_.explains(pair); });
-  crossing.insert(crossing.end(), explained.begin(), explained.end());
+  const auto first = std::stable_partition(
+      touching.begin(), touching.end(), [&](const CrossingPair& pair) { return !left_out_.explains(pair); });
+  const auto explained = static_cast<std::size_t>(touching.end() - first);
+  crossing.insert(crossing.end(), first, touching.end());
   std::ranges::sort(crossing);
-  rest_.crossing.total += explained.size();
-  rest_.touching.total -= explained.size();
-  touching.erase(explained.begin(), explained.end());
+  rest_.crossing.total += explained;
+  rest_.touching.total -= explained;
+  touching.erase(first, touching.end());
 }
 
 Session::PreparedStrategy Session::make(const Strategy& strategy) const {

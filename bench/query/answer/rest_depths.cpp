@@ -1,6 +1,8 @@
 #include "bench/query/answer/rest_depths.h"
 
 #include <algorithm>
+#include <limits>
+#include <span>
 
 #include "core/base/sort_unique.h"
 #include "core/detect/start/rest_crossings.h"
@@ -26,7 +28,10 @@ RestDepths::RestDepths(const TriangleMesh& mesh, OverlapFinder& finder, std::spa
 
 double RestDepths::most_near(const CrossingCurves& all, const Overlap& overlap) const {
   const auto of = [&](TriangleId triangle) {
-    return std::ranges::equal_range(near_, triangle, {}, [](const auto& entry) { return entry.first; });
+    const auto first = std::ranges::lower_bound(near_, std::pair(triangle, std::size_t{0}));
+    const auto last =
+        std::ranges::upper_bound(near_, std::pair(triangle, std::numeric_limits<std::size_t>::max()));
+    return std::span(first, last);
   };
   double most = 0;
   for_each_segment(all, overlap, [&](const auto& segment) {
