@@ -153,8 +153,7 @@ fs::path sequence_in_folder(const fs::path& folder) {
   if (found.empty())
     throw InputError(
         "is a folder without OBJ or PLY files and without a PC2 or MDD cache; name a model file, or a folder "
-        "with "
-        "one sequence of frames");
+        "with one sequence of frames");
   if (found.size() > 1)
     throw InputError("is a folder with " + std::to_string(found.size()) + " sequences, such as those of " +
                      found.begin()->filename().string() + " and " +

@@ -232,8 +232,7 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
   if (frames < 2 && !options.one_pose)
     throw InputError(
         "is one pose, and nothing moves; name one file of a sequence, as in walk.0001.obj, whose other "
-        "frames "
-        "lie beside it");
+        "frames lie beside it");
   const Surface surface = surface_of(*sequence);
   const TriangleMesh mesh(surface.faces.triangles, surface.vertex.size());
   if (frames > limits.frames || frames * surface.vertex.size() * sizeof(Vec3) > limits.cache_bytes)

@@ -23,14 +23,12 @@ std::vector<TriangleId> within_rings(const TriangleMesh& mesh, TriangleId center
 // elsewhere is still reported.
 //
 // Two exceptions keep collisions from being explained away:
-// - Triangles that only touch at rest explain nothing. A box that lies on a box touches it, and may be
-// pressed
-//   into it.
-// - Pairs that cross at rest explain something as long as their *place* has not parted. A place holds the
-// pairs
-//   whose triangles share a vertex on both sides, and so on, as along the line on which two pieces cross. It
-//   has parted once no pair that it explains crosses in a pose that follow() was told. What has parted and
-//   comes back is a collision.
+// - Triangles that only touch at rest explain nothing. A box that lies on a box touches that box, and may be
+//   pressed into it.
+// - Pairs that cross at rest explain something as long as their *place* has not parted. A place is a set of
+//   pairs that hang together along the line on which two pieces cross: neighbours in it share a vertex on
+//   both sides. A place has parted once no pair that it explains crosses in a pose that follow() was told.
+//   What has parted and comes back is a collision.
 class RestCrossings {
  public:
   static constexpr int kRings = 2;
