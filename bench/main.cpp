@@ -9,11 +9,11 @@
 #include <string>
 #include <unistd.h>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/cli/command_line/standard_streams.h"
-#include "bench/cli/command_line/usage.h"
 #include "bench/cli/interface_commands.h"
-#include "bench/cli/output/output.h"
+#include "bench/command_line/command.h"
+#include "bench/command_line/standard_streams.h"
+#include "bench/command_line/usage.h"
+#include "bench/output/output.h"
 #include "core/base/error.h"
 #include "core/base/instruction_set.h"
 #include "scenes/base/temporaries.h"

@@ -1,5 +1,5 @@
 // Records of runs.
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 
 #include "core/base/error.h"
 #include "fuzz/target.h"

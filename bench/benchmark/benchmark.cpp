@@ -12,9 +12,9 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "bench/cli/output/schema.h"
-#include "bench/cli/output/sha256.h"
-#include "bench/measure/strategies/catalogue.h"
+#include "bench/output/schema.h"
+#include "bench/output/sha256.h"
+#include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/detect/start/embedding.h"
 #include "core/elementary/exact/exact.h"

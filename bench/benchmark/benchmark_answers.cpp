@@ -12,7 +12,7 @@
 #include <sstream>
 #include <utility>
 
-#include "bench/cli/output/gzip.h"
+#include "bench/output/gzip.h"
 #include "core/base/error.h"
 #include "scenes/base/closest_name.h"
 #include "scenes/base/joined.h"

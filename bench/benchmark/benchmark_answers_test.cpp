@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/cli/output/schema.h"
+#include "bench/output/schema.h"
 #include "core/base/test_refusal.h"
 
 namespace cscd::bench {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/output/schema.h"
+#include "bench/output/schema.h"
 #include "bench/testing/test_shell.h"
 
 // The benchmark command from outside: what it writes, how it judges, and the program on its page.

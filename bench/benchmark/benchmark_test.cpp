@@ -8,8 +8,8 @@
 
 #include "bench/benchmark/entry.h"
 #include "bench/benchmark/judge.h"
-#include "bench/cli/output/schema.h"
-#include "bench/measure/strategies/catalogue.h"
+#include "bench/output/schema.h"
+#include "bench/strategies/catalogue.h"
 #include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"
 #include "core/elementary/exact/exact.h"

@@ -4,9 +4,9 @@
 #include <limits>
 #include <memory>
 
-#include "bench/compare/statistics.h"
-#include "bench/measure/record/environment.h"
-#include "bench/measure/strategies/strategy_row.h"
+#include "bench/records/environment.h"
+#include "bench/statistics/statistics.h"
+#include "bench/strategies/strategy_row.h"
 #include "core/base/error.h"
 #include "core/fast/drvbc_fast.h"
 

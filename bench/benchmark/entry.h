@@ -6,7 +6,7 @@
 
 #include "bench/benchmark/benchmark.h"
 #include "bench/benchmark/benchmark_answers.h"
-#include "bench/measure/strategies/strategy_row.h"
+#include "bench/strategies/strategy_row.h"
 
 namespace cscd::bench {
 

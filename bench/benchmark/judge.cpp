@@ -5,7 +5,7 @@
 #include <numeric>
 #include <set>
 
-#include "bench/compare/statistics.h"
+#include "bench/statistics/statistics.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {

@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "bench/benchmark/benchmark.h"
-#include "bench/cli/output/json_text.h"
-#include "bench/cli/output/output.h"
-#include "bench/cli/output/sha256.h"
+#include "bench/output/json_text.h"
+#include "bench/output/output.h"
+#include "bench/output/sha256.h"
 #include "core/base/error.h"
 #include "scenes/catalog/scene.h"
 #include "scenes/random/random_interval.h"

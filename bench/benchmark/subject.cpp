@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "bench/measure/replay/interval_choice.h"
-#include "bench/measure/strategies/catalogue.h"
+#include "bench/harness/interval_choice.h"
+#include "bench/strategies/catalogue.h"
 #include "scenes/hard/disturbance.h"
 #include "scenes/random/random_interval.h"
 #include "scenes/random/surface.h"

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/query/input/input.h"
+#include "bench/inputs/input.h"
 #include "scenes/clip/mesh_file.h"
 #include "scenes/hard/family.h"
 

@@ -1,9 +1,9 @@
-#include "bench/cli/output/glossary.h"
+#include "bench/output/glossary.h"
 
 #include <algorithm>
 #include <set>
 
-#include "bench/measure/strategies/catalogue.h"
+#include "bench/strategies/catalogue.h"
 #include "bench/testing/test_shell.h"
 #include "core/elementary/catalogue.h"
 

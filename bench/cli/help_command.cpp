@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "bench/cli/command_line/command.h"
+#include "bench/command_line/command.h"
 #include "core/base/error.h"
 #include "scenes/base/closest_name.h"
 

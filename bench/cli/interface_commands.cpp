@@ -6,7 +6,7 @@
 
 #include "bench/cli/interface/manual_page.h"
 #include "bench/cli/interface/shell_completion.h"
-#include "bench/cli/output/output.h"
+#include "bench/output/output.h"
 
 namespace cscd::bench {
 

@@ -5,10 +5,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/cli/output/glossary.h"
 #include "bench/cli/scene_file.h"
-#include "bench/measure/strategies/catalogue.h"
+#include "bench/command_line/command.h"
+#include "bench/output/glossary.h"
+#include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/elementary/catalogue.h"
 #include "scenes/base/closest_name.h"

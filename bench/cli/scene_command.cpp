@@ -1,8 +1,8 @@
 #include <CLI/App.hpp>
 #include <cstdio>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/cli/output/progress.h"
+#include "bench/command_line/command.h"
+#include "bench/output/progress.h"
 #include "scenes/catalog/scene_cache.h"
 
 namespace cscd::bench {

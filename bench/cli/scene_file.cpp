@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <vector>
 
-#include "bench/cli/output/markdown.h"
+#include "bench/output/markdown.h"
 #include "scenes/catalog/scene.h"
 #include "scenes/catalog/shapes.h"
 #include "scenes/effects/effect.h"

@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <optional>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/cli/output/json_text.h"
-#include "bench/cli/output/output.h"
+#include "bench/command_line/command.h"
 #include "bench/compare/comparison.h"
+#include "bench/output/json_text.h"
+#include "bench/output/output.h"
 
 namespace cscd::bench {
 namespace {

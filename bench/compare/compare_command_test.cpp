@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/output/schema.h"
+#include "bench/output/schema.h"
 #include "bench/testing/test_shell.h"
 
 // These tests compare and keep records as a user of a shell does.

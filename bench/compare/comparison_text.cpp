@@ -5,9 +5,9 @@
 #include <optional>
 #include <utility>
 
-#include "bench/cli/output/markdown.h"
 #include "bench/compare/comparison.h"
-#include "bench/measure/record/shortfall.h"
+#include "bench/output/markdown.h"
+#include "bench/records/shortfall.h"
 #include "core/base/number_text.h"
 
 namespace cscd::bench {

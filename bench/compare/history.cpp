@@ -8,10 +8,10 @@
 #include <span>
 #include <string_view>
 
-#include "bench/cli/output/data.h"
-#include "bench/cli/output/schema.h"
-#include "bench/compare/statistics.h"
 #include "bench/compare/times.h"
+#include "bench/output/data.h"
+#include "bench/output/schema.h"
+#include "bench/statistics/statistics.h"
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/number_text.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/compare/side.h"
-#include "bench/compare/statistics.h"
+#include "bench/statistics/statistics.h"
 
 // What this project took, commit by commit: one small JSON file a commit and kind of machine, which is never
 // rewritten.

@@ -3,9 +3,9 @@
 #include <fstream>
 #include <gtest/gtest.h>
 
-#include "bench/cli/output/json_text.h"
-#include "bench/cli/output/schema.h"
 #include "bench/compare/test_records.h"
+#include "bench/output/json_text.h"
+#include "bench/output/schema.h"
 #include "core/base/error.h"
 #include "core/base/test_folder.h"
 

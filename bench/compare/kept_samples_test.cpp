@@ -10,9 +10,9 @@
 #include <map>
 #include <random>
 
-#include "bench/cli/output/gzip.h"
 #include "bench/compare/comparison.h"
 #include "bench/compare/times.h"
+#include "bench/output/gzip.h"
 #include "scenes/catalog/scene.h"
 
 // What the comparison finds on kept samples (kept_samples.json.gz): 162 processes of one program in six

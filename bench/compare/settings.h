@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 
 namespace cscd::bench {
 

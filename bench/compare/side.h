@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 
 namespace cscd::bench {
 

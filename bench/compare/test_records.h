@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 
 namespace cscd::bench::test {
 

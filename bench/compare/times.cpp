@@ -5,11 +5,11 @@
 #include <map>
 #include <optional>
 
-#include "bench/cli/output/data.h"
 #include "bench/compare/settings.h"
 #include "bench/compare/side.h"
-#include "bench/compare/statistics.h"
-#include "bench/measure/record/shortfall.h"
+#include "bench/output/data.h"
+#include "bench/records/shortfall.h"
+#include "bench/statistics/statistics.h"
 
 namespace cscd::bench {
 

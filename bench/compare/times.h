@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/compare/statistics.h"
 #include "bench/compare/work.h"
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
+#include "bench/statistics/statistics.h"
 
 namespace cscd::bench {
 
@@ -42,7 +42,7 @@ struct TimeFinding {
   Change change = Change::same;
   // Why a change that the interval shows is not reported; empty where it is, or where there is none.
   std::string withheld = {};
-  bool of_shortfall = false;  // the row answers less than a complete one (bench/measure/record/shortfall.h)
+  bool of_shortfall = false;  // the row answers less than a complete one (bench/records/shortfall.h)
 };
 
 // The whole query of a row where no verdict about its times is possible. A side without such times has none.

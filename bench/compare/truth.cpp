@@ -5,7 +5,7 @@
 
 #include "bench/compare/settings.h"
 #include "bench/compare/side.h"
-#include "bench/measure/record/shortfall.h"
+#include "bench/records/shortfall.h"
 #include "core/base/number_text.h"
 
 namespace cscd::bench {

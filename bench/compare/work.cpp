@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/cli/output/data.h"
 #include "bench/compare/settings.h"
 #include "bench/compare/side.h"
-#include "bench/compare/statistics.h"
+#include "bench/output/data.h"
+#include "bench/statistics/statistics.h"
 
 namespace cscd::bench {
 namespace {

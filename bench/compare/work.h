@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 
 // What two programs counted: work, which is exact, and memory and instructions, which nearly are.
 namespace cscd::bench {

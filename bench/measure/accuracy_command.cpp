@@ -4,16 +4,16 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/cli/output/json_text.h"
-#include "bench/cli/output/output.h"
-#include "bench/cli/output/progress.h"
-#include "bench/cli/output/schema.h"
-#include "bench/compare/statistics.h"
-#include "bench/measure/record/environment.h"
-#include "bench/measure/strategies/catalogue.h"
+#include "bench/command_line/command.h"
 #include "bench/measure/studies/tally.h"
 #include "bench/measure/studies/workload.h"
+#include "bench/output/json_text.h"
+#include "bench/output/output.h"
+#include "bench/output/progress.h"
+#include "bench/output/schema.h"
+#include "bench/records/environment.h"
+#include "bench/statistics/statistics.h"
+#include "bench/strategies/catalogue.h"
 
 // The study: what accuracy costs in time, elementary test by elementary test (schema cscd.accuracy/1).
 namespace cscd::bench {

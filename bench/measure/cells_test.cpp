@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/output/schema.h"
+#include "bench/output/schema.h"
 #include "bench/testing/test_shell.h"
 #include "core/base/error.h"
 

@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/cli/output/output.h"
-#include "bench/compare/statistics.h"
-#include "bench/measure/strategies/catalogue.h"
+#include "bench/command_line/command.h"
+#include "bench/output/output.h"
+#include "bench/statistics/statistics.h"
+#include "bench/strategies/catalogue.h"
 #include "scenes/queries/query_file.h"
 
 namespace cscd::bench {

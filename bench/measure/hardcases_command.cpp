@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/cli/output/output.h"
+#include "bench/command_line/command.h"
+#include "bench/output/output.h"
 #include "core/base/error.h"
 #include "scenes/hard/disturbance.h"
 

@@ -1,11 +1,11 @@
-#include "bench/query/input/outside_truth.h"
+#include "bench/inputs/outside_truth.h"
 
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/output/gzip.h"
-#include "bench/measure/strategies/catalogue.h"
-#include "bench/query/input/input.h"
+#include "bench/inputs/input.h"
+#include "bench/output/gzip.h"
+#include "bench/strategies/catalogue.h"
 #include "bench/testing/test_shell.h"
 #include "scenes/catalog/scene.h"
 #include "scenes/clip/point_cache.h"

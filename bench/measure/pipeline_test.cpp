@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "bench/measure/strategies/catalogue.h"
+#include "bench/strategies/catalogue.h"
 #include "bench/testing/test_shell.h"
 #include "scenes/random/random_interval.h"
 

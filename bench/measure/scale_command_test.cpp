@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "bench/cli/output/schema.h"
 #include "bench/measure/studies/scale_input.h"
 #include "bench/measure/studies/scale_summary.h"
 #include "bench/measure/studies/scaling.h"
+#include "bench/output/schema.h"
 #include "bench/testing/test_program.h"
 #include "core/base/error.h"
 

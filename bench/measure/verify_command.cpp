@@ -1,10 +1,10 @@
 #include <CLI/App.hpp>
 #include <cstdio>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/cli/output/progress.h"
-#include "bench/measure/replay/random_verification.h"
-#include "bench/measure/strategies/catalogue.h"
+#include "bench/command_line/command.h"
+#include "bench/harness/random_verification.h"
+#include "bench/output/progress.h"
+#include "bench/strategies/catalogue.h"
 
 namespace cscd::bench {
 

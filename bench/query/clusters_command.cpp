@@ -1,12 +1,12 @@
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/cli/output/output.h"
-#include "bench/measure/strategies/catalogue.h"
-#include "bench/measure/strategies/strategy_row.h"
-#include "bench/query/input/input.h"
-#include "bench/query/options/model_options.h"
+#include "bench/answer/options/model_options.h"
+#include "bench/command_line/command.h"
+#include "bench/inputs/input.h"
+#include "bench/output/output.h"
+#include "bench/strategies/catalogue.h"
+#include "bench/strategies/strategy_row.h"
 #include "core/base/error.h"
 #include "core/elementary/catalogue.h"
 

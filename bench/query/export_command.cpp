@@ -1,12 +1,12 @@
 #include <CLI/App.hpp>
 #include <cstdio>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/cli/output/output.h"
-#include "bench/cli/output/progress.h"
+#include "bench/answer/options/model_options.h"
+#include "bench/command_line/command.h"
+#include "bench/inputs/input.h"
+#include "bench/output/output.h"
+#include "bench/output/progress.h"
 #include "bench/query/export_files.h"
-#include "bench/query/input/input.h"
-#include "bench/query/options/model_options.h"
 #include "core/base/error.h"
 #include "scenes/base/output_target.h"
 #include "scenes/clip/point_cache.h"

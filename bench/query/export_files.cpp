@@ -6,12 +6,12 @@
 #include <map>
 #include <vector>
 
-#include "bench/cli/output/output.h"
-#include "bench/cli/output/progress.h"
-#include "bench/measure/strategies/catalogue.h"
-#include "bench/measure/strategies/strategy_row.h"
-#include "bench/query/answer/answer.h"
-#include "bench/query/answer/overlap_events.h"
+#include "bench/answer/answer.h"
+#include "bench/answer/overlap_events.h"
+#include "bench/output/output.h"
+#include "bench/output/progress.h"
+#include "bench/strategies/catalogue.h"
+#include "bench/strategies/strategy_row.h"
 #include "core/base/error.h"
 #include "core/detect/contact_geometry.h"
 #include "core/detect/start/crossings.h"

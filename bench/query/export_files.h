@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "bench/query/input/input.h"
+#include "bench/inputs/input.h"
 
 namespace cscd::bench {
 

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/measure/strategies/catalogue.h"
-#include "bench/measure/strategies/strategy_row.h"
+#include "bench/strategies/catalogue.h"
+#include "bench/strategies/strategy_row.h"
 #include "bench/testing/test_program.h"
 #include "core/base/error.h"
 #include "scenes/clip/point_cache.h"

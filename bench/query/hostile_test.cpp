@@ -9,8 +9,8 @@
 #include <random>
 #include <sys/stat.h>
 
-#include "bench/cli/output/schema.h"
-#include "bench/query/input/input.h"
+#include "bench/inputs/input.h"
+#include "bench/output/schema.h"
 #include "bench/testing/test_generated.h"
 
 namespace cscd::bench {

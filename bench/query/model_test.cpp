@@ -10,8 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "bench/measure/strategies/catalogue.h"
-#include "bench/query/input/input.h"
+#include "bench/inputs/input.h"
+#include "bench/strategies/catalogue.h"
 #include "bench/testing/test_generated.h"
 #include "core/detect/start/embedding.h"
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/output/data.h"
-#include "bench/cli/output/schema.h"
+#include "bench/output/data.h"
+#include "bench/output/schema.h"
 #include "bench/testing/test_queries.h"
 #include "scenes/catalog/scene.h"
 

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <random>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/measure/strategies/catalogue.h"
-#include "bench/measure/strategies/verify.h"
+#include "bench/command_line/command.h"
+#include "bench/strategies/catalogue.h"
+#include "bench/strategies/verify.h"
 #include "bench/testing/rule_case.h"
 #include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "bench/cli/output/schema.h"
+#include "bench/output/schema.h"
 #include "bench/testing/test_queries.h"
 
 // --thickness from outside: what query, view, inspect and run say with it.

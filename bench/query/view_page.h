@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/query/options/answer_options.h"
+#include "bench/answer/options/answer_options.h"
 
 namespace cscd::bench {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "bench/cli/output/data.h"
-#include "bench/cli/output/markdown.h"
+#include "bench/output/data.h"
+#include "bench/output/markdown.h"
 #include "bench/tables/filled_tables.h"
 #include "bench/tables/run_times.h"
 #include "scenes/base/joined.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 #include "bench/tables/quantity.h"
 
 // What the paper claims in its text and tables, held against records. The claims are data:

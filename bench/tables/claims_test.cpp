@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/cli/output/data.h"
+#include "bench/output/data.h"
 
 namespace cscd::bench {
 namespace {

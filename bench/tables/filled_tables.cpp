@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bench/cli/output/data.h"
+#include "bench/output/data.h"
 
 namespace cscd::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 #include "bench/tables/quantity.h"
 
 // Every figure that tables have, published figures beside measured ones. What a column is,

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-#include "bench/cli/output/data.h"
-#include "bench/cli/output/json_text.h"
-#include "bench/cli/output/schema.h"
+#include "bench/output/data.h"
+#include "bench/output/json_text.h"
+#include "bench/output/schema.h"
 #include "bench/tables/claims.h"
 #include "bench/tables/tables_json.h"
 #include "core/base/test_refusal.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "bench/cli/output/markdown.h"
 #include "bench/compare/side.h"
+#include "bench/output/markdown.h"
 #include "scenes/base/joined.h"
 
 namespace cscd::bench {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 
 // Where and how records were measured, in words.
 namespace cscd::bench {

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "bench/measure/strategies/catalogue.h"
+#include "bench/strategies/catalogue.h"
 
 namespace cscd::bench {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/compare/statistics.h"
-#include "bench/measure/record/record.h"
-#include "bench/measure/record/shortfall.h"
+#include "bench/records/record.h"
+#include "bench/records/shortfall.h"
+#include "bench/statistics/statistics.h"
 
 namespace cscd::bench {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "bench/cli/output/data.h"
+#include "bench/output/data.h"
 #include "core/base/error.h"
 #include "scenes/base/files_in.h"
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 
 namespace cscd::bench {
 

@@ -11,16 +11,16 @@
 #include <utility>
 #include <vector>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/cli/output/output.h"
-#include "bench/cli/output/schema.h"
+#include "bench/command_line/command.h"
 #include "bench/compare/history.h"
-#include "bench/compare/statistics.h"
 #include "bench/compare/times.h"
-#include "bench/measure/record/record.h"
-#include "bench/measure/record/shortfall.h"
+#include "bench/output/output.h"
+#include "bench/output/schema.h"
 #include "bench/query/view/html.h"
 #include "bench/query/view_page.h"
+#include "bench/records/record.h"
+#include "bench/records/shortfall.h"
+#include "bench/statistics/statistics.h"
 #include "bench/tables/claims.h"
 #include "bench/tables/filled_tables.h"
 #include "bench/tables/record_inputs.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 #include "bench/tables/filled_tables.h"
 
 // Tables as people read them: every figure is a text already, and what draws them (terminal, Markdown, LaTeX,

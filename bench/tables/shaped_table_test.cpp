@@ -9,7 +9,7 @@
 #include <unistd.h>
 #include <vector>
 
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 #include "bench/tables/tables_text.h"
 #include "core/base/test_folder.h"
 

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "bench/cli/command_line/command.h"
-#include "bench/cli/output/json_text.h"
-#include "bench/cli/output/output.h"
+#include "bench/command_line/command.h"
+#include "bench/output/json_text.h"
+#include "bench/output/output.h"
 #include "bench/tables/claims.h"
 #include "bench/tables/filled_tables.h"
 #include "bench/tables/record_inputs.h"

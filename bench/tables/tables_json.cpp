@@ -1,6 +1,6 @@
 #include "bench/tables/tables_json.h"
 
-#include "bench/cli/output/data.h"
+#include "bench/output/data.h"
 #include "bench/tables/provenance.h"
 
 namespace cscd::bench {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 #include "bench/tables/claims.h"
 #include "bench/tables/filled_tables.h"
 

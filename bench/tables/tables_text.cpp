@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "bench/cli/output/data.h"
-#include "bench/cli/output/markdown.h"
+#include "bench/output/data.h"
+#include "bench/output/markdown.h"
 #include "bench/tables/provenance.h"
 #include "bench/tables/run_times.h"
 #include "scenes/base/joined.h"

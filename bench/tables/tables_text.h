@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "bench/measure/record/record.h"
+#include "bench/records/record.h"
 #include "bench/tables/claims.h"
 #include "bench/tables/shaped_table.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "bench/measure/strategies/catalogue.h"
+#include "bench/strategies/catalogue.h"
 #include "bench/testing/saboteurs.h"
 #include "core/detect/start/embedding.h"
 #include "core/mesh/test_shapes.h"

@@ -38,7 +38,7 @@ inline bool absent(const std::string& name) {
   return !fs::exists(model(name), error);
 }
 
-// Whether a line says how far a long piece of work is (bench/cli/output/progress.h).
+// Whether a line says how far a long piece of work is (bench/output/progress.h).
 inline bool is_progress(const std::string& line) {
   unsigned long done = 0, total = 0;
   const std::size_t at = line.rfind(": ");

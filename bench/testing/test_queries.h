@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "bench/cli/output/schema.h"
+#include "bench/output/schema.h"
 #include "bench/testing/test_generated.h"
 #include "bench/testing/test_shell.h"
 

@@ -8,7 +8,7 @@ import { CLOSE, contactWord, isBad, isOpen, many, markOf, VERDICTS } from "./wor
 export class Captions {
   constructor(recording) { this.recording = recording; }
 
-  // The sentences are made where the answers are (bench/query/answer/answer_text.h).
+  // The sentences are made where the answers are (bench/answer/answer_text.h).
   sayVerdict({ summary, details }) {
     const verdict = byId("verdict");
     verdict.className = isBad(summary) ? "bad" : isOpen(summary) ? "" : "good";

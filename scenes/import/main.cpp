@@ -1,5 +1,5 @@
 // cscd-import MODEL CACHE.h5 REPORT SOURCES [options]: turns a model file into a point cache, a report and
-// a source map. `cscd` runs this program under limits (bench/query/input/import.h), so that a reader of model
+// a source map. `cscd` runs this program under limits (bench/inputs/import.h), so that a reader of model
 // files never runs in the program that answers queries.
 #include <cstdio>
 #include <cstdlib>

@@ -55,7 +55,7 @@ function(cscd_bench_data room)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
   endforeach()
   file(CONFIGURE OUTPUT ${generated}/data_files.cpp @ONLY CONTENT [[
-#include "bench/cli/output/data.h"
+#include "bench/output/data.h"
 
 namespace cscd::bench {
 namespace {

@@ -219,7 +219,7 @@ class Runner:
         if file.endswith(".h"):  # most files above it are compiled anew for both
             others, fuzz = [*fuzz, *others], []
         return [("room", [own]), ("fuzz", fuzz), ("own", [own]), ("rooms", others),
-                ("proof", ["bench_measure_replay_test", "cscd"]), ("slow", self.targets(file)[1:])]
+                ("proof", ["bench_harness_test", "cscd"]), ("slow", self.targets(file)[1:])]
 
     def ask(self, copy, stage, program):
         """What run_gtest() returns, of a program that a mutation changed."""

@@ -73,7 +73,7 @@ def contacts_of(row):
 
 
 def mark(subject, step, name):
-    """What stands behind every time of a row in a step, as the tables have it (bench/measure/record/shortfall.h)."""
+    """What stands behind every time of a row in a step, as the tables have it (bench/records/shortfall.h)."""
     return MARK if lacks(subject, step, name) else ""
 
 

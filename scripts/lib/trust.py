@@ -29,7 +29,7 @@ LIB = ROOT / "scripts" / "lib"
 # Files and folders that have moved since records were written.
 MOVED = {
     "core/base/output_target": "scenes/base/output_target", "core/base/temporaries": "scenes/base/temporaries",
-    "core/detect/verify": "bench/measure/strategies/verify",
+    "core/detect/verify": "bench/strategies/verify",
     "core/elementary/certified/integer_polynomial": "core/elementary/certified/integer_roots",
     "core/elementary/newton_search.h": "core/elementary/newton.cpp",
     "core/elementary/exact/triangles_meet": "core/elementary/exact/static_contact",

@@ -3,7 +3,7 @@
 #include <cctype>
 #include <sstream>
 
-#include "bench/cli/command_line/usage.h"
+#include "bench/command_line/usage.h"
 
 namespace cscd::bench {
 namespace {

@@ -1,6 +1,6 @@
 #include "bench/cli/interface/shell_completion.h"
 
-#include "bench/cli/command_line/usage.h"
+#include "bench/command_line/usage.h"
 
 namespace cscd::bench {
 namespace {

@@ -8,9 +8,9 @@
 #include <iterator>
 #include <random>
 
-#include "bench/cli/output/gzip.h"
-#include "bench/cli/output/json_text.h"
-#include "bench/measure/record/environment.h"
+#include "bench/output/gzip.h"
+#include "bench/output/json_text.h"
+#include "bench/records/environment.h"
 #include "core/base/error.h"
 #include "scenes/base/output_target.h"
 #include "scenes/clip/digest.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/measure/replay/replay.h"
+#include "bench/harness/replay.h"
 
 // A long run can be interrupted, resumed and shared among workers. It is divided into cells, each of which
 // measures a range of the run's intervals and has a result file of its own. The files lie in one folder, and

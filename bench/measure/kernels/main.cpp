@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/measure/strategies/catalogue.h"
-#include "bench/query/input/input.h"
+#include "bench/inputs/input.h"
+#include "bench/strategies/catalogue.h"
 #include "core/detect/carried_pairs.h"
 #include "core/detect/plain_culler.h"
 #include "core/elementary/certified/filtered_exact.h"

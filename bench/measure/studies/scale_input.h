@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/measure/strategies/strategy_row.h"
-#include "bench/query/input/input.h"
+#include "bench/inputs/input.h"
+#include "bench/strategies/strategy_row.h"
 
 // The input of the study of growing work: one surface, prepared once, in intervals of its own or of other
 // motions.

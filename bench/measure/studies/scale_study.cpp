@@ -6,13 +6,13 @@
 #include <numeric>
 #include <optional>
 
-#include "bench/compare/statistics.h"
-#include "bench/measure/record/record.h"
-#include "bench/measure/record/shortfall.h"
-#include "bench/measure/replay/footprint.h"
-#include "bench/measure/replay/timing.h"
-#include "bench/measure/strategies/catalogue.h"
-#include "bench/measure/strategies/strategy_row.h"
+#include "bench/harness/footprint.h"
+#include "bench/harness/timing.h"
+#include "bench/records/record.h"
+#include "bench/records/shortfall.h"
+#include "bench/statistics/statistics.h"
+#include "bench/strategies/catalogue.h"
+#include "bench/strategies/strategy_row.h"
 #include "core/base/random.h"
 #include "core/base/stopwatch.h"
 #include "core/detect/start/embedding.h"

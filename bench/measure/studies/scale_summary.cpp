@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "bench/compare/statistics.h"
 #include "bench/measure/studies/scaling.h"
+#include "bench/statistics/statistics.h"
 
 namespace cscd::bench {
 

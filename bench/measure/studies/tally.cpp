@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "bench/compare/statistics.h"
+#include "bench/statistics/statistics.h"
 #include "core/base/random.h"
 #include "core/elementary/exact/closeness.h"
 #include "core/elementary/question/filter.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/measure/strategies/catalogue.h"
+#include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "scenes/hard/disturbance.h"
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <sstream>
 
-#include "bench/measure/strategies/catalogue.h"
-#include "bench/query/input/input.h"
+#include "bench/inputs/input.h"
+#include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "scenes/hard/disturbance.h"
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "bench/query/answer/clip_answer.h"
+#include "bench/answer/clip_answer.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/query/input/input.h"
+#include "bench/inputs/input.h"
 #include "bench/query/view/position_coder.h"
 #include "bench/query/view/sections.h"
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "bench/query/answer/overlap_events.h"
+#include "bench/answer/overlap_events.h"
 #include "bench/query/view/sections.h"
 
 namespace cscd::bench {

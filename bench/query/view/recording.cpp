@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "bench/query/answer/answer_json.h"
-#include "bench/query/answer/answer_text.h"
+#include "bench/answer/answer_json.h"
+#include "bench/answer/answer_text.h"
 #include "core/base/error.h"
 #include "core/detect/contact_geometry.h"
 #include "core/detect/start/crossings.h"

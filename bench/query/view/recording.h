@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/query/answer/clip_answer.h"
+#include "bench/answer/clip_answer.h"
 #include "bench/query/view/position_coder.h"
 #include "bench/query/view/sections.h"
 #include "core/detect/radial_view.h"

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "bench/cli/output/gzip.h"
+#include "bench/output/gzip.h"
 
 namespace cscd::bench {
 

@@ -18,7 +18,7 @@ say "packages"
 install_packages "${packages_build[@]}" "${packages_compare[@]}"
 
 say "build"
-tests=(core_base core_fast_prepare core_fast_classify core_fast library bench_measure_replay)
+tests=(core_base core_fast_prepare core_fast_classify core_fast library bench_harness)
 build $build sanitize_threads gcc cscd cscd_static "${tests[@]/%/_test}"
 g++ -std=c++20 -O1 -g -fsanitize=thread -I library/include -isystem /usr/include/eigen3 library/dispatch/digest.cpp \
   $build/libcscd.a -ltbb -lgmpxx -lgmp -o $build/digest
@@ -46,7 +46,7 @@ for name in "${tests[@]}"; do
   case $name in  # the others work on one thread
     core_fast) filter='*Threads*' ;;
     library) filter='SelfCollision.SessionsOnSeveralThreadsShareOneMesh' ;;
-    bench_measure_replay) filter='Parts.AreTheSameOnAnyNumberOfThreads' ;;
+    bench_harness) filter='Parts.AreTheSameOnAnyNumberOfThreads' ;;
   esac
   $build/"${name}_test" --gtest_brief=1 --gtest_filter="$filter" >$build/test.log 2>&1 ||
     die "$name: $(head -n 60 $build/test.log)"

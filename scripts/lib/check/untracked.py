@@ -53,7 +53,7 @@ def leave_things_about(copy):
             path.write_bytes(gzip.compress(json.dumps(record).encode()))
     texts = {"results/some-folder/half.json": "{", f"results/{FOLDER}.part/rope.json": "{}", "results/trust/2099-01-01-mutants.json": "{}",
              "results/history/some-machine/2099-01-01-0123456789.json": "{}", "scenes/mine.json": "{}",
-             "core/base/scratch.h": '#pragma once\n#include  "bench/cli/output/json.h"\n', "core/attic/scratch.cpp": "int  main( ) {}\n"}
+             "core/base/scratch.h": '#pragma once\n#include  "bench/output/json.h"\n', "core/attic/scratch.cpp": "int  main( ) {}\n"}
     for name, text in texts.items():
         (copy / name).parent.mkdir(parents=True, exist_ok=True)
         (copy / name).write_text(text)

@@ -18,7 +18,7 @@ test that fails ends the mutant:
   fuzz    the fuzz targets that use the room, on random input made from a fixed seed; of a header as part of `rooms`
   own     the tests of the mutant's room that take longer
   rooms   tests that are as quick, of the rooms of core and library above it
-  proof   tests of bench/measure/replay that hold the rules of core/soundness.md and plant errors, and `cscd verify`
+  proof   tests of bench/harness that hold the rules of core/soundness.md and plant errors, and `cscd verify`
   slow    the tests of the rooms above that take longer
 
 Each result goes at once into build-mutate/mutants.jsonl, one JSON object a line. A mutant that is in the file is not tried again,

@@ -1,0 +1,95 @@
+#include "bench/answer/answer.h"
+
+#include <algorithm>
+
+#include "bench/strategies/catalogue.h"
+
+namespace cscd::bench {
+namespace {
+
+AnswerOptions as_input_says(AnswerOptions options, const Input& input) {
+  options.thickness = input.thickness.thickness();
+  options.ignored = input.ignored ? &input.ignored->triangles : nullptr;
+  return options;
+}
+
+}  // namespace
+
+std::string_view to_string(IntervalVerdict verdict) {
+  switch (verdict) {
+    case IntervalVerdict::clear:
+      return "clear";
+    case IntervalVerdict::touches:
+      return "touches";
+    case IntervalVerdict::intersects_at_start:
+      return "intersects_at_start";
+    case IntervalVerdict::undecided:
+      return "undecided";
+    case IntervalVerdict::close:
+      return "close";
+  }
+  return "";
+}
+
+IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick) {
+  if (answer.start.total > 0) return IntervalVerdict::intersects_at_start;
+  if (is_thick ? !answer.touching.empty() : answer.time().has_value()) return IntervalVerdict::touches;
+  if (answer.time()) return IntervalVerdict::close;
+  return answer.found.contacts.empty() ? IntervalVerdict::clear : IntervalVerdict::undecided;
+}
+
+Crossings all_crossings(const IntervalAnswer& answer) {
+  Crossings all = answer.start;
+  for (const std::vector<CrossingPair>* more : {&answer.explained_pairs, &answer.ignored_pairs}) {
+    all.pairs.insert(all.pairs.end(), more->begin(), more->end());
+    all.total += more->size();
+  }
+  std::ranges::sort(all.pairs);
+  return all;
+}
+
+Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+                   const AnswerOptions& options)
+    : input_(input),
+      elementary_(elementary),
+      session_(input.name, input.setup(elementary), strategy, complete_fallback(), input.rest(),
+               as_input_says(options, input)) {}
+
+void Answerer::tell_touching_from_close(const Motion& motion, IntervalAnswer& answer) const {
+  for (const Contact& close : answer.found.contacts) {
+    if (close.verdict != Verdict::contact) continue;
+    answer.close_at_start += close.time == 0;
+    const Answer touch = ask(elementary_, input_.mesh, motion, close.pair);
+    if (touch.verdict == Verdict::contact) answer.touching.emplace(close.pair, touch.time);
+  }
+}
+
+IntervalAnswer Answerer::answer_step(const Motion& motion, const Rig::Interval* bones) {
+  IntervalAnswer answer;
+  session_.step(motion, bones, answer);
+  const bool is_thick = input_.thickness.length > 0;
+  if (is_thick) tell_touching_from_close(motion, answer);
+  answer.verdict = verdict_of(answer, is_thick);
+  return answer;
+}
+
+IntervalAnswer Answerer::answer(std::size_t index) {
+  const Stopwatch loading;
+  const scenes::ClipInterval interval = input_.clip->load(index);
+  const double load_ms = loading.milliseconds();
+  IntervalAnswer answer = answer_step(interval.motion, interval.bones ? &*interval.bones : nullptr);
+  answer.index = index;
+  answer.load_ms = load_ms;
+  return answer;
+}
+
+IntervalAnswer Answerer::pose(std::size_t frame) {
+  const scenes::FrameView view = input_.clip->load_frame(frame);
+  const Rig::Interval bones{view.bones, view.bones};
+  IntervalAnswer answer =
+      answer_step(Motion(view.positions, view.positions), view.bones.empty() ? nullptr : &bones);
+  answer.index = frame;
+  return answer;
+}
+
+}  // namespace cscd::bench

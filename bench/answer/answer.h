@@ -1,0 +1,85 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string_view>
+
+#include "bench/inputs/input.h"
+#include "core/session/session.h"
+#include "core/session/true_motion.h"
+
+namespace cscd::bench {
+
+enum class IntervalVerdict {
+  clear,                // nothing crosses at the start, and nothing touches
+  touches,              // nothing crosses at the start, and something touches
+  intersects_at_start,  // triangles cross at the start
+  undecided,  // nothing crosses, and an inexact elementary test could not tell whether something touches
+  close       // nothing crosses or touches, and something comes within the thickness
+};
+std::string_view to_string(IntervalVerdict verdict);
+
+// The answer to one interval of a clip.
+struct IntervalAnswer : StepAnswer {
+  std::size_t index = 0;
+  IntervalVerdict verdict = IntervalVerdict::clear;
+  double load_ms = 0;  // what it took to read both frames, outside of `wall_ms`
+  // With a thickness, contacts are close pairs. `touching` holds the earliest times at which those of them
+  // touch that do. `close_at_start` counts those that are close when the interval starts.
+  std::map<FeaturePair, double> touching;
+  std::size_t close_at_start = 0;
+  // [contacts], the numbers of the events to which they belong (OverlapEvents::Here); empty where none
+  // begins.
+  std::vector<std::size_t> event_of_contact;
+  // With --new-contacts: what is left out because it lies within events.
+  std::size_t old_pairs = 0, old_contacts = 0;
+  // What is known of the true motion, where that was asked for (TrueAnswerer). Everything else is about
+  // straight lines.
+  std::optional<TrueAnswer> motion = std::nullopt;
+  double motion_ms = 0;
+};
+
+// The verdict that goes by what the answer holds.
+IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick);
+
+// Everything that crosses at the start, whether it is left out of the answer or not.
+Crossings all_crossings(const IntervalAnswer& answer);
+
+using AnswerOptions = SessionOptions;
+
+// Answers the intervals of an input, best in growing order (see Session).
+class Answerer {
+ public:
+  // Prepares the strategy. What the input says is ignored is no part of answers. Throws InputError where the
+  // input lacks what the strategy needs, where options do not go together, and where too many triangles cross
+  // at rest. `input` must outlive it.
+  Answerer(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+           const AnswerOptions& options);
+
+  IntervalAnswer answer(std::size_t interval);
+  // Answers a frame as an interval in which nothing moves, best after the interval that ends there: what
+  // crosses in the frame is what its answer says of the start.
+  IntervalAnswer pose(std::size_t frame);
+
+  // Returns what preparing the strategy has found out; empty where it saves nothing.
+  std::vector<std::byte> saved_preparation() const { return session_.saved_preparation(); }
+  // Milliseconds that it took to prepare the strategy and to find what crosses at rest.
+  double preparation_ms() const { return session_.preparation_ms(); }
+  // How many triangles the preparation of the input did not know.
+  std::size_t new_triangles() const { return session_.new_triangles(); }
+  // The triangles that cross at rest, which are left out of answers until they part, and those that only
+  // touch there, which are not (Session).
+  const Crossings& rest_crossings() const { return session_.rest_crossings(); }
+  const Crossings& rest_touching() const { return session_.rest_touching(); }
+  int threads() const { return session_.threads(); }
+
+ private:
+  IntervalAnswer answer_step(const Motion& motion, const Rig::Interval* bones);
+  void tell_touching_from_close(const Motion& motion, IntervalAnswer& answer) const;
+
+  Input& input_;
+  const ElementaryTest& elementary_;
+  Session session_;
+};
+
+}  // namespace cscd::bench

@@ -1,0 +1,155 @@
+#include "bench/answer/clip_answer.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <tuple>
+
+#include "bench/inputs/thickness.h"
+
+namespace cscd::bench {
+namespace {
+
+NamePair in_order(std::string a, std::string b) {
+  if (b < a) std::swap(a, b);
+  return {std::move(a), std::move(b)};
+}
+
+// Whether any vertex moves by more than rounding. A clip may drive a camera alone, or hold a pose.
+bool is_moving(const Motion& motion) {
+  constexpr double kRounding = 1e-9;  // of the largest coordinate
+  double most = 0, farthest = 0;
+  for (std::size_t v = 0; v < motion.start().size(); ++v) {
+    most = std::max(most, motion.start()[v].cwiseAbs().maxCoeff());
+    farthest = std::max(farthest, (motion.end()[v] - motion.start()[v]).cwiseAbs().maxCoeff());
+  }
+  return farthest > kRounding * most;
+}
+
+}  // namespace
+
+std::optional<double> second_of(const Input& input, const ClipMoment& moment) {
+  if (!input.import) return std::nullopt;
+  const std::size_t frames = input.clip->frame_count();
+  const double from = second_of_frame(*input.import, moment.interval, frames);
+  const double to = second_of_frame(*input.import, moment.interval + 1, frames);
+  return (1 - moment.time) * from + moment.time * to;
+}
+
+double frame_of(const Input& input, const ClipMoment& moment) {
+  const std::optional<double> seconds = second_of(input, moment);
+  return seconds ? frame_at(*input.import, *seconds) : static_cast<double>(moment.interval) + moment.time;
+}
+
+std::size_t AnswerSummary::intervals() const {
+  return std::accumulate(verdicts.begin(), verdicts.end(), std::size_t{0});
+}
+
+void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, const SurfaceNames& names) {
+  moves = moves || is_moving(motion);
+  if (intervals() == 0) first_index = answer.index;
+  last_index = answer.index;
+  ++verdicts[static_cast<std::size_t>(answer.verdict)];
+  ++strategies[std::string(answer.strategy->name)];
+  proven += answer.proven;
+  with_left_out += answer.rest_pairs + answer.rest_contacts > 0;
+  left_out_contacts += answer.rest_contacts;
+  old_pairs += answer.old_pairs;
+  old_contacts += answer.old_contacts;
+  with_old += answer.old_pairs + answer.old_contacts > 0;
+  close_at_start += answer.close_at_start;
+  with_close_at_start += answer.close_at_start > 0;
+  add_ignored(answer, names);
+  embedding_ms += answer.embedding_ms;
+  query_ms += answer.report.ms.total();
+  load_ms += answer.load_ms;
+  wall_ms += answer.wall_ms;
+  if (answer.verdict == IntervalVerdict::clear && first) parted_ = true;
+  if (answer.verdict == IntervalVerdict::clear || answer.verdict == IntervalVerdict::undecided) return;
+
+  const bool crosses = answer.verdict == IntervalVerdict::intersects_at_start;
+  const ClipMoment moment{answer.index, crosses ? 0 : answer.time().value_or(0)};
+  const std::size_t contacts =
+      static_cast<std::size_t>(std::count_if(answer.found.contacts.begin(), answer.found.contacts.end(),
+                                             [](const Contact& c) { return c.verdict == Verdict::contact; }));
+  if (!worst || std::tie(answer.start.total, contacts) > std::tie(worst->start_pairs, worst->contacts))
+    worst = Worst{moment, answer.start.total, contacts};
+
+  std::set<NamePair> here;
+  const auto meet = [&](TriangleId a, TriangleId b) {
+    std::string x = names.place_of(a), y = names.place_of(b);
+    if (!first) first = Meeting{moment, crosses, {x, y}};
+    if (parted_ && !first_after_parting) first_after_parting = Meeting{moment, crosses, {x, y}};
+    here.insert(in_order(std::move(x), std::move(y)));
+  };
+  for (const CrossingPair& pair : answer.start.pairs) meet(pair.first, pair.second);
+  for (const Contact& contact : answer.found.contacts)
+    if (contact.verdict == Verdict::contact)
+      meet(names.triangle_of(contact.pair, false), names.triangle_of(contact.pair, true));
+  if (!first) first = Meeting{moment, crosses, {"the surface", "the surface"}};
+  for (const NamePair& both : here) ++met[both];
+}
+
+void AnswerSummary::add_ignored(const IntervalAnswer& answer, const SurfaceNames& names) {
+  std::set<NamePair> here;
+  const auto meet = [&](TriangleId a, TriangleId b) -> IgnoredHere& {
+    const auto [one, added] = here.insert(in_order(names.place_of(a), names.place_of(b)));
+    IgnoredHere& entry = ignored[*one];
+    entry.intervals += added;
+    return entry;
+  };
+  for (const CrossingPair& pair : answer.ignored_pairs) ++meet(pair.first, pair.second).start_pairs;
+  for (const Contact& contact : answer.ignored.contacts)
+    if (contact.verdict == Verdict::contact)
+      ++meet(names.triangle_of(contact.pair, false), names.triangle_of(contact.pair, true)).contacts;
+  with_ignored += !here.empty();
+}
+
+IntervalVerdict AnswerSummary::verdict() const {
+  for (const IntervalVerdict worst : {IntervalVerdict::intersects_at_start, IntervalVerdict::touches,
+                                      IntervalVerdict::close, IntervalVerdict::undecided})
+    if (count(worst) > 0) return worst;
+  return IntervalVerdict::clear;
+}
+
+std::size_t identical_triangles(const TriangleMesh& mesh) {
+  const auto found =
+      std::ranges::find(mesh.defects(), Defect::duplicate_triangle, &TriangleMesh::DefectReport::kind);
+  return found == mesh.defects().end() ? 0 : found->count;
+}
+
+std::optional<IntervalAnswer> last_pose_of(const Input& input, std::size_t frame, Answerer& answerer,
+                                           OverlapEvents& events) {
+  if (input.is_one_pose) return std::nullopt;
+  IntervalAnswer answer = answerer.pose(frame);
+  answer.found.contacts.clear();  // those of the pose are no contacts of an interval
+  answer.touching.clear();
+  events.add(answer, input.clip->load_frame(frame).positions, {});
+  return answer;
+}
+
+ClipAnswer prepared_answer(const Input& input, const SurfaceNames& names, const Strategy& strategy,
+                           const ElementaryTest& elementary, const AnswerOptions& options,
+                           const Answerer& answerer) {
+  ClipAnswer out{input,
+                 names,
+                 strategy,
+                 elementary,
+                 options.first,
+                 !options.keep_rest_crossings,
+                 answerer.threads(),
+                 answerer.preparation_ms(),
+                 answerer.rest_crossings(),
+                 answerer.rest_touching()};
+  if (const Exclusions* const left_out = input.thickness.left_out.get()) {
+    const ContactSet close = close_at_rest(input);
+    out.close_at_rest = close.contacts.size();
+    out.left_out_at_rest =
+        static_cast<std::size_t>(std::ranges::count_if(close.contacts, [&](const Contact& contact) {
+          return left_out->excludes(input.mesh, contact.pair);
+        }));
+  }
+  return out;
+}
+
+}  // namespace cscd::bench

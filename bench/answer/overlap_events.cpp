@@ -1,0 +1,235 @@
+#include "bench/answer/overlap_events.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "core/base/stopwatch.h"
+
+namespace cscd::bench {
+namespace {
+
+// What crosses at rest and bends is a little deeper in most poses: up to this factor, it is as deep as at
+// rest.
+constexpr double kDeeper = 1.1;
+
+CrossingPair pair_of(const std::array<TriangleId, 2>& segment) {
+  return std::minmax(segment[0], segment[1]);
+}
+
+// The event that most of the marks name, among those whose first two numbers are listed; kNone for none.
+class Votes {
+ public:
+  template <class Marks>
+  void add(const Marks& marks, std::int32_t a, std::int32_t b) {
+    for (auto at = std::ranges::lower_bound(marks, std::tuple(a, b, std::size_t{0}));
+         at != marks.end() && std::get<0>(*at) == a && std::get<1>(*at) == b; ++at)
+      ++count_[std::get<2>(*at)];
+  }
+  std::size_t most() const {
+    const auto most = std::ranges::max_element(count_, {}, [](const auto& entry) { return entry.second; });
+    return most == count_.end() ? OverlapEvents::kNone : most->first;
+  }
+
+ private:
+  std::map<std::size_t, std::size_t> count_;
+};
+
+}  // namespace
+
+OverlapEvents::OverlapEvents(const Input& input, const SurfaceNames& names, const Answerer& answerer)
+    : input_(input), names_(names), answerer_(answerer), finder_(input.mesh) {}
+
+OverlapEvents::Kind OverlapEvents::kind_of(const Overlaps& all, const Overlap& overlap,
+                                           const IntervalAnswer& answer) const {
+  if (answer.explained_pairs.empty() && answer.ignored_pairs.empty()) return Kind::counted;
+  std::size_t pairs = 0, counted = 0, ignored = 0;
+  for_each_segment(all.crossing, overlap, [&](const auto& segment) {
+    ++pairs;
+    counted += answer.start.contains(pair_of(segment));
+    ignored += std::ranges::binary_search(answer.ignored_pairs, pair_of(segment));
+  });
+  if (2 * counted > pairs) return Kind::counted;
+  return 2 * ignored < pairs ? Kind::crosses_at_rest : Kind::ignored;
+}
+
+double OverlapEvents::depth_at_rest(const Overlaps& all, const Overlap& overlap) {
+  if (!rest_) {
+    std::vector<CrossingPair> met;
+    std::ranges::merge(answerer_.rest_crossings().pairs, answerer_.rest_touching().pairs,
+                       std::back_inserter(met));
+    rest_.emplace(input_.mesh, finder_, input_.rest(), met);
+  }
+  return rest_->most_near(all.crossing, overlap);
+}
+
+NamePair OverlapEvents::names_of(const Overlaps& all, const Overlap& overlap) const {
+  // The side of each curve on which the deepest region lies; 0 where that bounds none.
+  std::map<std::int32_t, std::size_t> side;
+  if (!overlap.regions.empty())
+    for (const std::int32_t image : overlap.regions.front().image)
+      side.try_emplace(image / 2, static_cast<std::size_t>(image % 2));
+  std::map<std::pair<std::int32_t, std::int32_t>, std::pair<std::size_t, std::array<TriangleId, 2>>> count;
+  auto last = count.end();  // neighbouring segments are mostly between the same places
+  for (const std::int32_t curve : overlap.curves) {
+    const auto own = side.find(curve);
+    if (!side.empty() && own == side.end()) continue;
+    const std::size_t s = own == side.end() ? 0 : own->second;
+    for (const auto& segment : all.crossing.curves[static_cast<std::size_t>(curve)].segments) {
+      const std::pair places(names_.place_number(segment[s]), names_.place_number(segment[1 - s]));
+      if (last == count.end() || last->first != places) last = count.try_emplace(places).first;
+      auto& [times, example] = last->second;
+      ++times;
+      example = {segment[s], segment[1 - s]};
+    }
+  }
+  const auto& [one, other] = std::ranges::max_element(count, {}, [](const auto& entry) {
+                               return entry.second.first;
+                             })->second.second;
+  return {names_.place_of(one), names_.place_of(other)};
+}
+
+std::size_t OverlapEvents::continued_event(const Overlaps& all, const Overlap& overlap,
+                                           const NamePair& names) {
+  Votes by_vertex, by_pair;
+  for (const CrossingRegion& region : overlap.regions)
+    for (const VertexId v : region.vertices)
+      by_vertex.add(vertices_, static_cast<std::int32_t>(v), region.other);
+  if (const std::size_t event = by_vertex.most(); event != kNone) return event;
+  if (!std::exchange(pairs_are_sorted_, true)) std::ranges::sort(pairs_);
+  for_each_segment(all.crossing, overlap, [&](const auto& segment) {
+    const auto [a, b] = pair_of(segment);
+    by_pair.add(pairs_, static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
+  });
+  if (const std::size_t event = by_pair.most(); event != kNone) return event;
+  const NamePair swapped{names.second, names.first};
+  for (const std::size_t event : going_on_)
+    if (events_[event].names == names || events_[event].names == swapped) return event;
+  return kNone;
+}
+
+void OverlapEvents::extend(OverlapEvent& event, const Overlaps& all, const Overlap& overlap,
+                           const NamePair& names, std::size_t interval, std::span<const Vec3> start,
+                           const std::optional<double>& at_rest) {
+  const bool is_new = event.depth_at.empty();
+  if (is_new) event.first = interval;
+  event.last = interval;
+  event.depth_at.resize(interval - event.first + 1, 0.0);
+  event.depth_at.back() = std::max(event.depth_at.back(), overlap.depth.lower);
+  const auto order = [](const CrossingDepth& depth) { return std::tuple(depth.lower, depth.upper); };
+  if (!is_new && order(overlap.depth) <= order(event.depth)) return;
+  event.names = names;
+  event.deepest = interval;
+  event.depth = overlap.depth;
+  event.curves = overlap.curves.size();
+  event.pairs = event.vertices = 0;
+  event.area = 0;
+  event.at_rest = at_rest;
+  const auto curve = [&](std::int32_t c) -> const CrossingCurve& {
+    return all.crossing.curves[static_cast<std::size_t>(c)];
+  };
+  for (const std::int32_t c : overlap.curves) event.pairs += curve(c).segments.size();
+  if (!overlap.regions.empty()) {
+    const CrossingRegion& deepest = overlap.regions.front();
+    event.vertices = deepest.vertices.size();
+    event.area = deepest.area;
+    event.side = deepest.side;
+    event.other_is_open = deepest.other_is_open;
+  }
+  event.point = event.depth.nearest != TriangleId{-1}
+                    ? event.depth.point
+                    : all.crossing.point(curve(overlap.curves.front()).nodes.front(), start);
+}
+
+OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<const Vec3> start,
+                                       const Wanted& wanted) {
+  const Stopwatch watch;
+  Here here;
+  std::vector<Mark> vertices, pairs;
+  std::vector<std::size_t> going_on;
+  const Crossings all = all_crossings(answer);
+  not_measured_ += all.total > kMostPairs;
+  if (answer.start.total + answer.explained_pairs.size() > 0 && all.total <= kMostPairs) {
+    here.overlaps = finder_.find(start, all.pairs, wanted.ways);
+    for (const Overlap& overlap : here.overlaps.overlaps) {
+      here.event.push_back(kNone);
+      const Kind kind = kind_of(here.overlaps, overlap, answer);
+      if (kind == Kind::ignored) continue;
+      std::optional<double> at_rest;
+      if (kind == Kind::crosses_at_rest) {
+        at_rest = depth_at_rest(here.overlaps, overlap);
+        if (!(overlap.depth.lower > kDeeper * *at_rest)) continue;
+      }
+      const NamePair names = names_of(here.overlaps, overlap);
+      std::size_t event = continued_event(here.overlaps, overlap, names);
+      if (event == kNone) {
+        event = events_.size();
+        events_.emplace_back();
+      }
+      extend(events_[event], here.overlaps, overlap, names, answer.index, start, at_rest);
+      here.event.back() = event;
+      going_on.push_back(event);
+      for (const CrossingRegion& region : overlap.regions)
+        for (const VertexId v : region.vertices)
+          vertices.emplace_back(static_cast<std::int32_t>(v), region.other, event);
+      for_each_segment(here.overlaps.crossing, overlap, [&](const auto& segment) {
+        const auto [a, b] = pair_of(segment);
+        pairs.emplace_back(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), event);
+      });
+    }
+  }
+  if (wanted.pieces || !answer.found.contacts.empty())
+    here.pieces = OverlapPieces(input_.mesh, here.overlaps, here.event);
+  assign_contacts(here, answer);
+  std::ranges::sort(vertices);
+  std::ranges::sort(going_on);
+  vertices_ = std::move(vertices);
+  pairs_ = std::move(pairs);
+  pairs_are_sorted_ = false;
+  going_on_ = std::move(going_on);
+  milliseconds_ += watch.milliseconds();
+  return here;
+}
+
+void OverlapEvents::assign_contacts(Here& here, const IntervalAnswer& answer) {
+  if (here.pieces.empty()) {
+    here.event_of_contact.assign(answer.found.contacts.size(), kNone);
+    return;
+  }
+  for (const Contact& contact : answer.found.contacts) {
+    const std::size_t found = here.pieces.find(input_.mesh, contact.pair);
+    here.event_of_contact.push_back(found);
+    if (found != kNone) ++events_[found].contacts;
+  }
+}
+
+void keep_new(IntervalAnswer& answer, const OverlapEvents::Here& here, bool is_thick) {
+  answer.old_pairs = std::erase_if(answer.start.pairs, [&](const CrossingPair& pair) {
+    return here.pieces.find(pair.first, pair.second) != OverlapEvents::kNone;
+  });
+  answer.start.total -= answer.old_pairs;
+  std::vector<cscd::Contact> left;
+  for (std::size_t i = 0; i < answer.found.contacts.size(); ++i) {
+    const cscd::Contact& contact = answer.found.contacts[i];
+    if (here.event_of_contact[i] == OverlapEvents::kNone)
+      left.push_back(contact);
+    else
+      answer.touching.erase(contact.pair);
+  }
+  answer.old_contacts = answer.found.contacts.size() - left.size();
+  answer.found.contacts = std::move(left);
+  answer.event_of_contact.clear();
+  answer.verdict = verdict_of(answer, is_thick);
+}
+
+std::vector<std::size_t> deepest_first(std::span<const OverlapEvent> events) {
+  std::vector<std::size_t> order(events.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) {
+    return std::tuple(events[i].depth.lower, events[i].depth.upper);
+  });
+  return order;
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "bench/answer/answer.h"
+#include "bench/answer/rest_depths.h"
+#include "bench/answer/surface_names.h"
+#include "core/crossing/overlaps.h"
+#include "core/crossing/pieces.h"
+
+namespace cscd::bench {
+
+// Two pieces of the surface that lie in each other for some time: "left hand in thigh". It is known at the
+// starts of intervals, at each of which it is an Overlap.
+struct OverlapEvent {
+  NamePair names;                                // which place lies in which, where it is deepest
+  std::size_t first = 0, deepest = 0, last = 0;  // intervals
+  // All below is said of the start of interval `deepest`.
+  CrossingDepth depth;
+  Vec3 point = Vec3::Zero();  // the deepest, or where none is known, some point of a curve
+  std::size_t pairs = 0, curves = 0;
+  // Of the deepest region (CrossingRegion). There is none where no vertex lies in the other sheet.
+  std::size_t vertices = 0;
+  double area = 0;
+  CrossingRegion::Side side = CrossingRegion::Side::behind;
+  bool other_is_open = false;
+  // Of pieces that cross at rest: how deep they lie there (RestDepths), which is less than `depth.lower`.
+  std::optional<double> at_rest;
+  std::vector<double> depth_at;  // of intervals first to last; 0 where it pauses
+  std::size_t contacts = 0;      // of these intervals, between its pieces
+};
+
+// The numbers of events in the order of their depths, deepest first.
+std::vector<std::size_t> deepest_first(std::span<const OverlapEvent> events);
+
+// Follows overlaps from interval to interval. An overlap continues the event with whose regions it shares
+// most vertices. An overlap that shares no vertex with any continues the event with which it shares most
+// crossing pairs of triangles. If it shares none of these either, it continues an event between the same two
+// places that no other overlap continues. Overlaps of which most pairs of triangles are ignored are no
+// events. Those of which most pairs are left out because they cross at rest are events where they lie deeper
+// than at rest by more than a tenth.
+class OverlapEvents {
+ public:
+  // `answerer` has found what meets at rest. All arguments must outlive it.
+  OverlapEvents(const Input& input, const SurfaceNames& names, const Answerer& answerer);
+
+  // `start` are the positions at the interval's start. Intervals come in growing order. Returns what overlaps
+  // there, with the number of each one's event.
+  struct Here {
+    Overlaps overlaps;
+    std::vector<std::size_t> event;  // [overlaps.overlaps]; kNone for those that are no events
+    // [answer.found.contacts], the event to which a contact belongs, because it is between pieces that lie in
+    // each other when the interval starts; kNone for new contacts.
+    std::vector<std::size_t> event_of_contact;
+    OverlapPieces pieces;  // of each event; only where the answer has contacts, or where they are wanted
+  };
+  static constexpr std::size_t kNone = OverlapPieces::kNone;
+  struct Wanted {
+    bool ways = false;    // of all vertices, in the regions
+    bool pieces = false;  // also where the answer has no contacts
+  };
+  Here add(const IntervalAnswer& answer, std::span<const Vec3> start, const Wanted& wanted);
+
+  // All events, in the order in which they begin.
+  const std::vector<OverlapEvent>& all() const { return events_; }
+  double milliseconds() const { return milliseconds_; }
+  // At how many starts more than kMostPairs pairs of triangles cross: nothing is said of these. A surface
+  // with so many has collapsed, and pairs that touch exactly take long.
+  static constexpr std::size_t kMostPairs = 100'000;
+  std::size_t not_measured() const { return not_measured_; }
+
+ private:
+  void assign_contacts(Here& here, const IntervalAnswer& answer);
+
+  using Mark =
+      std::tuple<std::int32_t, std::int32_t, std::size_t>;  // what two numbers stand for, and the event
+
+  // What an overlap is, by most of its pairs of triangles.
+  enum class Kind { counted, crosses_at_rest, ignored };
+  Kind kind_of(const Overlaps& all, const Overlap& overlap, const IntervalAnswer& answer) const;
+  // How deep the overlap lies at rest.
+  double depth_at_rest(const Overlaps& all, const Overlap& overlap);
+  std::size_t continued_event(const Overlaps& all, const Overlap& overlap, const NamePair& names);
+  NamePair names_of(const Overlaps& all, const Overlap& overlap) const;
+  void extend(OverlapEvent& event, const Overlaps& all, const Overlap& overlap, const NamePair& names,
+              std::size_t interval, std::span<const Vec3> start, const std::optional<double>& at_rest);
+
+  const Input& input_;
+  const SurfaceNames& names_;
+  const Answerer& answerer_;
+  OverlapFinder finder_;
+  std::optional<RestDepths> rest_;  // once it is asked for
+  std::vector<OverlapEvent> events_;
+  std::vector<Mark> vertices_, pairs_;  // of the last interval; sorted, pairs only once they are needed
+  bool pairs_are_sorted_ = false;
+  std::vector<std::size_t> going_on_;  // events of the last interval; sorted
+  double milliseconds_ = 0;
+  std::size_t not_measured_ = 0;
+};
+
+// Leaves out of an answer what lies within events: contacts, and pairs that cross at the start. `here` is
+// what OverlapEvents::add() said of the answer.
+void keep_new(IntervalAnswer& answer, const OverlapEvents::Here& here, bool is_thick);
+
+}  // namespace cscd::bench

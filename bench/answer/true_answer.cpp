@@ -1,0 +1,275 @@
+#include "bench/answer/true_answer.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "bench/strategies/catalogue.h"
+#include "core/base/error.h"
+#include "core/base/number_text.h"
+#include "core/base/stopwatch.h"
+
+namespace cscd::bench {
+namespace {
+
+using nlohmann::json;
+
+// Frames are that far from keys at most, as a share of the time between frames, where both are meant to be
+// one: files hold times in single precision. The spans that are asked about then end at the keys.
+constexpr double kAtKey = 1e-5;
+
+// Frames and the paths are computed by different code, and at times that differ by what files round. They may
+// differ by this share of the largest coordinate.
+constexpr double kSamePlace = 1e-5;
+
+TrueMotionOptions options_of(const Input& input, const RestCrossings& left_out, const AnswerOptions& options,
+                             const std::optional<WrittenLength>& resolution) {
+  if (input.thickness.length > 0)
+    throw InputError("--true-motion: takes no --thickness; leave one of the two out");
+  TrueMotionOptions out = true_motion_options(input.thickness.edge);
+  if (resolution) out.resolution = resolution->length(input.thickness.edge);
+  out.ignored = input.ignored ? &input.ignored->triangles : nullptr;
+  out.left_out = options.keep_rest_crossings ? nullptr : &left_out;
+  return out;
+}
+
+// How far a frame is from the positions of the motion through it, if that is too far.
+std::optional<double> gap_between(const Motion& straight, std::span<const Vec3> positions) {
+  double size = 0, off = 0;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    size = std::max(size, positions[v].cwiseAbs().maxCoeff());
+    off = std::max(off, (positions[v] - straight.start()[v]).norm());
+  }
+  return off <= kSamePlace * size ? std::nullopt : std::optional(off);
+}
+
+double exact_second_of(const Input& input, std::size_t frame) {
+  return second_of_frame(*input.import, frame, input.clip->frame_count());
+}
+
+double second_of(const Input& input, std::size_t frame) {
+  return input.motion->at_corner(exact_second_of(input, frame), kAtKey / input.import->fps);
+}
+
+double at_share(const Input& input, std::size_t interval, double seconds) {
+  const double from = second_of(input, interval), to = second_of(input, interval + 1);
+  return std::clamp((seconds - from) / (to - from), 0.0, 1.0);
+}
+
+bool meets(TrueVerdict verdict) {
+  return verdict == TrueVerdict::touches || verdict == TrueVerdict::intersects_at_start;
+}
+
+// Of a span that starts crossed no more is asked, and nothing is known of how far it leaves straight lines.
+TrueAnswer crossing_at(double time, std::optional<CrossingPair> pair = {}) {
+  TrueAnswer out{.verdict = TrueVerdict::intersects_at_start, .from = time, .to = time, .pair = pair};
+  out.deviation = std::numeric_limits<double>::infinity();
+  return out;
+}
+
+bool meets(IntervalVerdict verdict) {
+  return verdict == IntervalVerdict::touches || verdict == IntervalVerdict::intersects_at_start;
+}
+
+std::string first_text(const Input& input, const TrueSummary::Meeting& first) {
+  const auto frame = [&](double seconds) {
+    char digits[32];
+    std::snprintf(digits, sizeof digits, "%.3f", frame_at(*input.import, seconds));
+    return std::string(digits);
+  };
+  const TrueAnswer& answer = first.answer;
+  const bool crosses = answer.verdict == TrueVerdict::intersects_at_start;
+  return "at frame " + frame(answer.from) + (answer.to > answer.from ? " to " + frame(answer.to) : "") +
+         " (" + short_text(answer.to) + " s): " + meeting_text(first.names, crosses ? "crosses" : "touches");
+}
+
+}  // namespace
+
+TrueAnswerer::TrueAnswerer(const Input& input, const ElementaryTest& elementary, const Crossings& rest,
+                           const AnswerOptions& options, const std::optional<WrittenLength>& resolution)
+    : input_(input),
+      left_out_(input.mesh, rest),
+      motion_(*input.motion, input.setup(elementary), complete_fallback(),
+              options_of(input, left_out_, options, resolution)) {}
+
+void TrueAnswerer::answer(const Motion& straight, IntervalAnswer& answer) {
+  const Stopwatch asking;
+  left_out_.follow(all_crossings(answer));
+  const double from = second_of(input_, answer.index), to = second_of(input_, answer.index + 1);
+  if (answer.verdict == IntervalVerdict::intersects_at_start) {
+    answer.motion = crossing_at(from);
+  } else if (gap_between(straight, motion_.positions_at(from))) {
+    // The surface moves far between the frame and the key that stands for it: the frame's start is not known
+    // to be the key's.
+    const double frame = exact_second_of(input_, answer.index);
+    if (const std::optional<double> gap = gap_between(straight, motion_.positions_at(frame)))
+      throw InputError("--true-motion: frame " + std::to_string(answer.index) +
+                       " and the motion through it are " + exact_text(*gap) +
+                       " apart, which is a fault of this program; ask about straight lines, without it");
+    answer.motion = TrueAnswer{.verdict = TrueVerdict::undecided,
+                               .from = from,
+                               .to = to,
+                               .deviation = std::numeric_limits<double>::infinity()};
+  } else {
+    // What ends clear starts the next interval without crossings. Elsewhere the true pose is searched,
+    // because that of the frame is another by rounding.
+    const auto pair = clear_until_ == from ? std::nullopt : motion_.crossing_at(from);
+    answer.motion = pair ? crossing_at(from, pair) : motion_.answer(from, to);
+  }
+  clear_until_ = answer.motion->verdict == TrueVerdict::clear ? std::optional(to) : std::nullopt;
+  answer.motion_ms = asking.milliseconds();
+}
+
+bool differs(const IntervalAnswer& answer) {
+  if (!answer.motion) return false;
+  const TrueVerdict own = answer.motion->verdict;
+  const bool is_known = meets(own) || own == TrueVerdict::clear;
+  return is_known && meets(own) != meets(answer.verdict);
+}
+
+IntervalVerdict TrueSummary::verdict() const {
+  if (count(TrueVerdict::intersects_at_start) > 0) return IntervalVerdict::intersects_at_start;
+  if (count(TrueVerdict::touches) > 0) return IntervalVerdict::touches;
+  if (count(TrueVerdict::close) > 0) return IntervalVerdict::close;
+  return count(TrueVerdict::undecided) > 0 ? IntervalVerdict::undecided : IntervalVerdict::clear;
+}
+
+void TrueSummary::add(const IntervalAnswer& answer, const SurfaceNames& names) {
+  if (!answer.motion) return;
+  const TrueAnswer& own = *answer.motion;
+  ++intervals;
+  ++verdicts[static_cast<std::size_t>(own.verdict)];
+  parts += own.parts, pieces += own.pieces, jumps += own.jumps;
+  ms += answer.motion_ms;
+  if (own.parts == 0)
+    ++not_asked;
+  else if (own.deviation < std::numeric_limits<double>::infinity())
+    deviation = std::max(deviation, own.deviation);
+  else
+    ++without_bound;
+  if (differs(answer)) ++(meets(own.verdict) ? only_true : only_straight);
+  std::optional<CrossingPair> pair = own.pair;
+  if (!pair && !answer.start.pairs.empty()) pair = answer.start.pairs.front();
+  if (!meets(own.verdict) || !pair) return;
+  const Meeting here{answer.index, own, {names.place_of(pair->first), names.place_of(pair->second)}};
+  if (!first) first = here;
+  if (!first_missed && differs(answer)) first_missed = here;
+}
+
+std::string true_predicate(const Input& input, const TrueSummary& s, const std::string& frames,
+                           const std::string& exceptions) {
+  const std::string apart = exceptions.empty() ? "" : ", apart from " + exceptions;
+  const auto in = [&](TrueVerdict verdict) {
+    return " in " + std::to_string(s.count(verdict)) + " of " + std::to_string(s.intervals) +
+           " intervals of its true motion";
+  };
+  const std::size_t touch = s.count(TrueVerdict::touches);
+  std::string text;
+  switch (s.verdict()) {
+    case IntervalVerdict::intersects_at_start:
+      text = "crosses itself" + in(TrueVerdict::intersects_at_start) +
+             (touch > 0 ? " and touches itself in " + std::to_string(touch) + " more" : "");
+      break;
+    case IntervalVerdict::touches:
+      text = "touches itself" + in(TrueVerdict::touches);
+      break;
+    case IntervalVerdict::close:
+      return "comes too close to itself to tell whether it touches" + in(TrueVerdict::close) + apart;
+    case IntervalVerdict::undecided:
+      return "may touch itself, which is undecided" + in(TrueVerdict::undecided) + apart;
+    case IntervalVerdict::clear:
+      return (exceptions.empty() ? "does not touch itself" : "touches itself") +
+             (" in its true motion" + frames) + (exceptions.empty() ? "" : " only in " + exceptions);
+  }
+  text += apart;
+  return s.first ? text + ", first " + first_text(input, *s.first) : text;
+}
+
+std::string true_motion_text(const Input& input, const TrueSummary& s) {
+  if (!input.import || input.bone_names.empty()) return {};
+  if (!input.motion)
+    return "  answered for straight lines between frames; --true-motion asks about the paths on which bones "
+           "carry "
+           "the surface\n";
+  const auto part = [&](TrueVerdict verdict, const char* words) {
+    return s.count(verdict) > 0 ? std::to_string(s.count(verdict)) + " " + words + ", " : std::string();
+  };
+  std::string out = "  true motion: " + part(TrueVerdict::clear, "clear") +
+                    part(TrueVerdict::touches, "touch") + part(TrueVerdict::close, "too close to tell") +
+                    part(TrueVerdict::undecided, "undecided") +
+                    part(TrueVerdict::intersects_at_start, "cross at their start or after a jump");
+  out.resize(out.size() - 2);
+  out += "\n  straight lines between frames ";
+  if (s.only_true > 0) out += "miss contacts in " + std::to_string(s.only_true) + " of these intervals";
+  if (s.first_missed && s.first_missed->interval != s.first->interval)
+    out += ", first " + first_text(input, *s.first_missed);
+  if (s.only_straight > 0)
+    out += (s.only_true > 0 ? "; they have contacts in " : "have contacts in ") +
+           std::to_string(s.only_straight) + " in which the true motion has none";
+  if (s.only_true + s.only_straight == 0) out += "agree with it in every interval that is decided";
+  if (s.not_asked == s.intervals) {
+    out += "\n  every interval starts crossed, and no more is asked of such";
+  } else if (s.bounded() == 0) {
+    out += "\n  of no interval as a whole is it known how far the surface leaves straight lines";
+  } else {
+    out += "\n  the surface leaves straight lines by at most " + short_text(s.deviation) +
+           (s.jumps > 0 ? " between jumps" : "");
+    if (input.thickness.edge > 0)
+      out += " (" + short_text(s.deviation / input.thickness.edge) + " mean edges)";
+    if (s.without_bound > 0)
+      out += ", apart from " + std::to_string(s.without_bound) + " intervals without a bound";
+    if (s.not_asked > 0) out += ", apart from " + std::to_string(s.not_asked) + " that start crossed";
+  }
+  if (s.jumps > 0)
+    out += "; it jumps " + std::string(s.jumps == 1 ? "once" : std::to_string(s.jumps) + " times") +
+           ", and nothing is asked of the way across a jump";
+  return out + "; this took " + short_text(s.ms) + " ms more\n";
+}
+
+json true_motion_json(const Input& input, const IntervalAnswer& answer) {
+  const TrueAnswer& own = *answer.motion;
+  const bool bounded = own.deviation < std::numeric_limits<double>::infinity();
+  json pair;
+  if (own.pair) pair = {static_cast<int>(own.pair->first), static_cast<int>(own.pair->second)};
+  return {{"verdict", to_string(own.verdict)},
+          {"differs", differs(answer)},
+          {"from", at_share(input, answer.index, own.from)},
+          {"to", at_share(input, answer.index, own.to)},
+          {"within", own.verdict == TrueVerdict::close ? json(own.within) : json()},
+          {"pair", std::move(pair)},
+          {"parts_again", own.parts_again},
+          {"deviation", bounded ? json(own.deviation) : json()},
+          {"parts", own.parts},
+          {"pieces", own.pieces},
+          {"jumps", own.jumps},
+          {"ms", answer.motion_ms}};
+}
+
+json true_motion_json(const Input& input, const TrueSummary& s) {
+  json first;
+  if (s.first)
+    first = {{"interval", s.first->interval},
+             {"from", at_share(input, s.first->interval, s.first->answer.from)},
+             {"to", at_share(input, s.first->interval, s.first->answer.to)},
+             {"first", s.first->names.first},
+             {"second", s.first->names.second}};
+  return {{"verdict", to_string(s.verdict())},
+          {"clear", s.count(TrueVerdict::clear)},
+          {"touches", s.count(TrueVerdict::touches)},
+          {"close", s.count(TrueVerdict::close)},
+          {"undecided", s.count(TrueVerdict::undecided)},
+          {"intersects_at_start", s.count(TrueVerdict::intersects_at_start)},
+          {"only_true", s.only_true},
+          {"only_straight", s.only_straight},
+          {"first", std::move(first)},
+          {"deviation", s.bounded() > 0 ? json(s.deviation) : json()},
+          {"without_bound", s.without_bound},
+          {"not_asked", s.not_asked},
+          {"parts", s.parts},
+          {"pieces", s.pieces},
+          {"jumps", s.jumps},
+          {"ms", s.ms}};
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,218 @@
+#include "bench/harness/replay.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "bench/harness/contestant.h"
+#include "bench/harness/footprint.h"
+#include "bench/harness/interval_choice.h"
+#include "bench/harness/timing.h"
+#include "bench/harness/verification.h"
+#include "bench/records/environment.h"
+#include "bench/strategies/catalogue.h"
+#include "core/base/error.h"
+#include "core/base/pipeline.h"
+#include "scenes/base/joined.h"
+#include "scenes/catalog/plain_name.h"
+#include "scenes/catalog/scene_cache.h"
+#include "scenes/clip/digest.h"
+
+namespace cscd::bench {
+namespace {
+
+// Judges culling, whatever test is timed. At a distance, the test in integers takes a millisecond a pair, so
+// there the judge is the one that asks doubles first and is as right.
+constexpr char kReferee[] = "exact", kRefereeOfDistances[] = "filtered_exact";
+
+// Enough to see that everything works, in seconds; too little to conclude anything from its times.
+constexpr std::size_t kSmokeIntervals = 8, kSmokeRepetitions = 2, kSmokeEvery = 4;
+
+// Returns the command line with every default spelt out, and without the place of the result.
+std::vector<std::string> command_line(const ReplayRequest& options, const Input& input) {
+  std::vector<std::string> words = {"cscd", "run"};
+  const auto add = [&](const char* name, const std::string& value) {
+    words.insert(words.end(), {name, value});
+  };
+  add("--scene", options.scene);
+  add("--strategy", joined(options.strategies, ","));
+  add("--elementary", options.elementary);
+  add("--pipeline", options.pipeline);
+  add("--frames", options.frames);
+  add("--repetitions", std::to_string(options.repetitions));
+  add("--count-every", std::to_string(options.count_every));
+  add("--time-every", std::to_string(options.time_every));
+  add("--time-contacts", std::to_string(options.time_contacts));
+  add("--verify-every", std::to_string(options.verify_every));
+  add("--seed", std::to_string(options.seed));
+  add("--threads", std::to_string(options.threads));
+  if (input.ignored) {
+    for (const auto& [first, second] : input.ignored->names) add("--ignore", first + ":" + second);
+    if (input.ignored->neighbours) add("--ignore-neighbours", std::to_string(*input.ignored->neighbours));
+  }
+  const ThicknessRequest& near = input.thickness.asked;
+  if (near.thickness.number > 0) add("--thickness", near.thickness.text);
+  if (near.rings > 0) add("--exclude-rings", std::to_string(near.rings));
+  if (near.near_rest.number > 0) add("--exclude-near-rest", near.near_rest.text);
+  if (input.import) {
+    const std::vector<std::string> model = to_arguments(options.model.import);
+    words.insert(words.end(), model.begin(), model.end());
+  }
+  return words;
+}
+
+SceneRecord describe(Input& input) {
+  SceneRecord record;
+  const bool is_scene_file = scenes::is_scene_file(input.name);
+  const bool is_file = !is_scene_file && (input.import || std::filesystem::path(input.name).has_extension());
+  record.name = input.name;
+  if (is_file || is_scene_file) {
+    record.name = scenes::plain_name(input.name);
+    record.path = input.name;
+  }
+  if (!is_file) {
+    const scenes::Scene scene = scenes::load_scene(input.name);
+    record.story = scene.story;
+    record.effects = scenes::effect_costs(scene);
+  }
+  scenes::DigestSink digest;
+  scenes::copy_frames(*input.clip, digest);
+  record.digest = digest.text();
+  record.vertices = input.mesh.vertex_count();
+  record.triangles = input.mesh.triangle_count();
+  record.bones = input.clip->header().bone_parent.size();
+  record.frames = input.clip->frame_count();
+  return record;
+}
+
+StrategyRecord describe(const Contestant& contestant) {
+  StrategyRecord record;
+  record.name = contestant.row.name();
+  record.source = contestant.row.strategy->source;
+  record.guarantee = to_string(contestant.row.strategy->guarantee);
+  record.threads = contestant.threads;
+  if (contestant.row.strategy->kind == StrategyKind::adaptive) record.lead = kLead;
+  record.preparation = contestant.preparation;
+  return record;
+}
+
+void leave_out_what_varies(Record& record) {
+  record.environment = build_environment();
+  record.scene.effects.clear();
+  record.verification.seconds = 0;
+  for (StrategyRecord& strategy : record.strategies) {
+    strategy.preparation.distance_and_heat_ms.clear();
+    strategy.preparation.decomposition_ms.clear();
+  }
+}
+
+// Every K-th interval of the range, and intervals with contacts beside them, by the fastest complete
+// strategy.
+std::vector<std::size_t> intervals_to_time(Input& input, const IntervalRange& range,
+                                           const ReplayRequest& request) {
+  const std::vector<std::size_t> regular = every_kth(range, request.time_every);
+  if (request.time_contacts == 0) return regular;
+  const Prepared fastest = complete_fallback().make(
+      measured_setup(input, complete_fallback(), elementary_test_named("filtered_exact")));
+  return with_contacts(regular, intervals_with_contacts(input, *fastest.detector, range),
+                       request.time_contacts);
+}
+
+// Judges and counts the contestants, times them where intervals are to be timed, and keeps what came of it in
+// the record's strategies. Times are missing where a strategy failed.
+VerificationRecord verified_and_timed(Input& input, std::span<Contestant> contestants,
+                                      const ElementaryTest& exact, const ElementaryTest& timed,
+                                      const Replay& replay, Record& record) {
+  Verifier verifier(input, contestants, exact, timed);
+  verifier.judge(replay.intervals.verified);
+  if (!verifier.record().ok()) return verifier.record();
+  const WarmUp counted = warm_up(input, contestants, record.counted_intervals, verifier, record.strategies);
+  verifier.judge(counted.disagreeing);
+  std::optional<Unrepeatable> void_times = counted.unrepeatable;
+  if (!replay.intervals.timed.empty() && !void_times && verifier.record().ok()) {
+    const TimingPlan plan{record.timed_intervals, replay.request.repetitions, replay.request.seed};
+    void_times = time_contestants(input, contestants, plan, verifier, counted, record.strategies);
+    for (std::size_t c = 0; c < contestants.size(); ++c)
+      record.strategies[c].footprint =
+          measure_footprint(input, contestants[c].row, timed, record.timed_intervals);
+  }
+  VerificationRecord verified = verifier.record();
+  verified.disagreeing = counted.disagreeing;
+  verified.excused = counted.excused;
+  if (void_times) verified.strategies[void_times->contestant].failures.push_back(void_times->failure);
+  return verified;
+}
+
+}  // namespace
+
+void require_sound(const ReplayRequest& request) {
+  if (pipeline_named(request.pipeline) == Pipeline::published && request.elementary != kPublishedTest)
+    throw InputError("--pipeline published --elementary " + request.elementary +
+                     ": the paper's elementary test is a part of that pipeline; leave --elementary out");
+  elementary_test_named(request.elementary);
+  rows_called(request.strategies);
+}
+
+Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
+  Replay replay{kind, asked, {}, {}};
+  ReplayRequest& request = replay.request;
+  IntervalRange range = parse_frames(request.frames, input);
+  if (request.smoke) {
+    if (range.last - range.first > kSmokeIntervals)  // those in the middle, where more happens
+      range.first += (range.last - range.first - kSmokeIntervals) / 2;
+    range.last = std::min(range.last, range.first + kSmokeIntervals);
+    request.repetitions = kSmokeRepetitions;
+    request.verify_every = request.time_every = kSmokeEvery;
+    request.time_contacts = std::min<std::size_t>(request.time_contacts, 1);
+    request.smoke = false;
+  }
+  request.frames = frames_text(range, input);
+  if (!input.clip_was_named)  // so that the record says which clip it is of
+    request.model.import.clip = std::to_string(input.import->chosen_clip);
+  request.strategies.clear();
+  for (const StrategyRow& row : chosen_rows(input, asked.strategies, pipeline_named(request.pipeline)))
+    request.strategies.push_back(row.name());
+  if (request.strategies.empty())
+    throw InputError("--strategy: " + request.scene +
+                     " allows none of these; name others (cscd list strategies)");
+  replay.command = command_line(request, input);
+
+  ChosenIntervals& intervals = replay.intervals;
+  intervals.range = range;
+  if (kind == ReplayKind::timings) intervals.timed = intervals_to_time(input, range, request);
+  // Whatever is timed is verified.
+  intervals.verified = united(std::vector{every_kth(range, request.verify_every), intervals.timed});
+  intervals.counted = united(std::vector{every_kth(range, request.count_every), intervals.verified});
+  return replay;
+}
+
+Record execute(Input& input, const Replay& replay) {
+  const ElementaryTest& timed = elementary_test_named(replay.request.elementary);
+  const ElementaryTest& exact =
+      elementary_test_named(input.thickness.length > 0 ? kRefereeOfDistances : kReferee);
+  input.threads = replay.request.threads;
+
+  Record record;
+  record.environment = environment();
+  record.command = replay.command;
+  record.scene = describe(input);
+  record.seed = replay.request.seed;
+  record.pipeline = pipeline_named(replay.request.pipeline);
+  record.elementary = timed.name;
+  record.thickness = input.thickness.length;
+  // Queries with a thickness are other work, which no table puts beside the scene's own.
+  if (record.thickness > 0) record.scene.name += ", thickness " + input.thickness.asked.thickness.text;
+  record.intervals = replay.intervals.range.last - replay.intervals.range.first;
+  record.counted_intervals = replay.intervals.counted;
+  record.timed_intervals = replay.intervals.timed;
+  std::vector<Contestant> contestants =
+      make_contestants(input, chosen_rows(input, replay.request.strategies, record.pipeline), exact, timed);
+  for (const Contestant& contestant : contestants) record.strategies.push_back(describe(contestant));
+
+  record.verification = verified_and_timed(input, contestants, exact, timed, replay, record);
+  if (!record.verification.ok())
+    for (std::size_t c = 0; c < contestants.size(); ++c) record.strategies[c] = describe(contestants[c]);
+  if (replay.kind == ReplayKind::counts) leave_out_what_varies(record);
+  return record;
+}
+
+}  // namespace cscd::bench

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/inputs/input.h"
+#include "bench/records/record.h"
+
+// One measurement as a value, and its execution: a run of the whole input and each part of a divided run are
+// executed by the same code.
+namespace cscd::bench {
+
+inline constexpr char kPublishedTest[] = "newton";  // the paper's elementary test
+
+// What a user asks of a run.
+struct ReplayRequest {
+  std::string scene = "rope", elementary = kPublishedTest, pipeline = "today", frames;
+  std::vector<std::string> strategies;  // names and groups; empty for all rows without a group
+  std::size_t repetitions = 5, count_every = 1, time_every = 1, time_contacts = 3, verify_every = 1;
+  std::uint64_t seed = 2014;
+  int threads = 1;
+  bool smoke = false;
+  ModelOptions model;
+};
+
+// Throws InputError where names are not known or do not go together. It opens nothing.
+void require_sound(const ReplayRequest& request);
+
+// `counts` takes what every machine repeats to the bit: verdicts, counters and digests. `timings` takes these
+// and also times and footprints.
+enum class ReplayKind { counts, timings };
+
+// The intervals of a range that are measured, each list ascending. Intervals that are verified or timed are
+// among the counted ones, and timed intervals are among the verified ones.
+struct ChosenIntervals {
+  IntervalRange range;
+  std::vector<std::size_t> verified, counted, timed;
+};
+
+// A request that has been resolved for one input: its strategies are rows without groups, and it says in
+// numbers what `smoke` stands for.
+struct Replay {
+  ReplayKind kind;
+  ReplayRequest request;
+  std::vector<std::string> command;  // the command line of the whole run, with every default spelt out
+  ChosenIntervals intervals;
+};
+
+// Throws InputError where the input has no such frames, or allows none of the strategies.
+Replay resolve(Input& input, const ReplayRequest& request, ReplayKind kind);
+// Verifies, counts and, where the kind says so, times. The record has no counters and no times if a strategy
+// breaks its promise. A record of the kind `counts` holds nothing that another run of the same program on the
+// same input would not repeat.
+Record execute(Input& input, const Replay& replay);
+
+}  // namespace cscd::bench

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "bench/inputs/input.h"
+#include "bench/inputs/thickness_request.h"
+#include "core/detect/strategy.h"
+
+namespace cscd::bench {
+
+// Sets Input::thickness. Whoever leaves out what the input ignores before it is tested says so by
+// `with_ignored`. Throws InputError where a length overflows.
+void set_thickness(Input& input, const ThicknessRequest& request, bool with_ignored = false);
+
+// Throws InputError, naming those that can, where a strategy or an elementary test cannot answer the request:
+// because it knows no distance, or cannot leave pairs out.
+void require_fit(const ThicknessRequest& request, const Strategy& strategy);
+void require_fit(const ThicknessRequest& request, const ElementaryTest& elementary);
+// Says what a strategy lacks for the request; empty where it lacks nothing.
+std::string why_not_within(const ThicknessRequest& request, const Strategy& strategy);
+
+// The feature pairs that are close in the pose at rest, whether left out or not, sorted; by the complete
+// reference and an exact test.
+ContactSet close_at_rest(const Input& input);
+
+}  // namespace cscd::bench
