@@ -1,4 +1,4 @@
-// Elementary tests against the referee.
+// Elementary tests against the oracle.
 #include <cmath>
 
 #include "core/elementary/catalogue.h"
@@ -21,7 +21,7 @@ void judge(const Query& query) {
       if (answer.time > truth->hi) broken(name + " is late");
       if (row.contact_is_proof && answer.verdict == Verdict::contact &&
           std::abs(answer.time - truth->lo) > 1e-12)
-        broken(name + " gives another time than the referee");
+        broken(name + " gives another time than the oracle");
     }
     if (!truth && row.contact_is_proof && answer.verdict == Verdict::contact)
       broken(name + " invents a contact");

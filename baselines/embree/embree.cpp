@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/base/team.h"
+#include "core/base/thread_pool.h"
 #include "core/detect/compose.h"
 #include "core/hierarchy/package_box.h"
 
@@ -23,7 +23,7 @@
 // boxes are not compared with each other. So this strategy takes one order and compares the boxes itself. The
 // manual does not say either that rtcCollide finds all pairs; the test compares its answer with all pairs of
 // boxes. rtcCollide calls back with a processor mode that takes subnormal numbers for zero, so the callback
-// computes nothing. A device that is told to use one thread limits all of oneTBB to one thread, our own team
+// computes nothing. A device that is told to use one thread limits all of oneTBB to one thread, our own pool
 // included. So the device is not told, and its functions are called where there is only one thread.
 //
 // Fidelity: the package as it is. The boxes are those of the strategy `aabb`, rounded outward. Filter

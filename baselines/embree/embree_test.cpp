@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "baselines/test_packages.h"
-#include "core/base/team.h"
+#include "core/base/thread_pool.h"
 #include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
 
@@ -27,7 +27,7 @@ TEST(Embree, LeavesOtherThreadsAlone) {
   const TriangleMesh mesh = shape.mesh();
   const Prepared embree = make_embree({mesh, shape.positions, nullptr, *find_elementary_test("newton")});
   std::atomic<int> started = 0, met = 0;
-  Team(2).parallel_for(2, [&](std::size_t, std::size_t) {
+  ThreadPool(2).parallel_for(2, [&](std::size_t, std::size_t) {
     ++started;
     const auto begin = std::chrono::steady_clock::now();
     while (started < 2 && std::chrono::steady_clock::now() - begin < std::chrono::seconds(20))

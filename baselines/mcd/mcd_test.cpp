@@ -10,7 +10,7 @@
 #include "baselines/plain.h"
 #include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
-#include "core/radial/exact_orientation.h"
+#include "core/radial/test_exact_orientation.h"
 
 namespace cscd::mcd {
 namespace {

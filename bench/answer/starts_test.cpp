@@ -187,7 +187,7 @@ TEST(KnownStarts, AreFollowedToWhereSignsPay) {
                             .kind = StrategyKind::fixed,
                             .make = make_looking,
                             .sees_start = true,
-                            .looks_by_signs = by_signs};
+                            .drops_by_signs = by_signs};
     Looking::asked = 0;
     Answerer answerer(input, strategy, elementary_test_named("exact"), {});
     EXPECT_EQ(Looking::asked, 1);

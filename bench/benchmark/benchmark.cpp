@@ -32,7 +32,7 @@ exact::TimeEnclosure enclosure(const TriangleMesh& mesh, const Motion& motion, c
       pair.kind == FeaturePair::Kind::vertex_face
           ? exact::first_contact(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}))
           : exact::first_contact(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}));
-  if (!time) throw std::logic_error("the referee takes back a contact");
+  if (!time) throw std::logic_error("the oracle takes back a contact");
   return *time;
 }
 

@@ -41,7 +41,7 @@ struct IntervalTruth {
 
 // Finds the exact answer to one interval of a mesh. Meshes of up to 600 triangles are culled by nothing: all
 // pairs of triangles are looked at. Larger ones are culled by the complete reference. Contacts are decided by
-// the referee. `id` stays empty.
+// the oracle. `id` stays empty.
 IntervalTruth find_truth(const TriangleMesh& mesh, const scenes::PosedMesh& posed, std::size_t interval);
 
 // A line of truth.jsonl (benchmark_truth.schema.json).

@@ -65,9 +65,9 @@ class PublicBenchmark : public testing::Test {
   }
 };
 
-// The truth by another way: the referee is asked about every feature pair, without culling and without a
+// The truth by another way: the oracle is asked about every feature pair, without culling and without a
 // filter, and every two triangles are tested at the start.
-IntervalTruth by_referee(const TriangleMesh& mesh, const scenes::PosedMesh& posed) {
+IntervalTruth by_oracle(const TriangleMesh& mesh, const scenes::PosedMesh& posed) {
   const auto& [start, end] = posed.intervals.at(0);
   const Motion motion(start.positions, end.positions);
   IntervalTruth out;
@@ -100,13 +100,13 @@ IntervalTruth by_referee(const TriangleMesh& mesh, const scenes::PosedMesh& pose
 
 // Mutations: contacts are decided by the paper's test; crossings are those of the end. (Rows that promise the
 // first contact alone are no mutation: on meshes as small as these they find all.)
-TEST(Truth, IsWhatTheRefereeSaysOfEveryPair) {
+TEST(Truth, IsWhatTheOracleSaysOfEveryPair) {
   std::size_t contacts = 0, crossing = 0;
   const auto compare = [&](const Subject& subject) {
     SCOPED_TRACE(subject.name);
     const TriangleMesh mesh(subject.mesh.triangles, subject.mesh.reference.positions.size());
     const IntervalTruth truth = find_truth(mesh, subject.mesh, 0);
-    IntervalTruth expected = by_referee(mesh, subject.mesh);
+    IntervalTruth expected = by_oracle(mesh, subject.mesh);
     std::vector<TrueContact> found = truth.contacts;
     const auto by_pair = [](const TrueContact& a, const TrueContact& b) { return a.pair < b.pair; };
     std::ranges::sort(found, by_pair);

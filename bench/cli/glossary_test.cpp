@@ -57,7 +57,7 @@ class GlossaryProgram : public Program {};
 
 TEST_F(GlossaryProgram, ExplainsWhatIsAskedFor) {
   for (const std::string what :
-       {"BVOT", "pctp", "DRVBC", "16-dop", "embedding", "embedded", "referee", "refit", "guarantee",
+       {"BVOT", "pctp", "DRVBC", "16-dop", "embedding", "embedded", "oracle", "refit", "guarantee",
         "mega cluster", "mcd", "drvbc_fast_all", "filtered_exact"}) {
     const Ran ran = run("cscd list " + what);
     EXPECT_EQ(ran.status, 0) << ran.errors;
@@ -76,7 +76,7 @@ TEST_F(GlossaryProgram, ExplainsTheWordsOfHelp) {
                                    "embedded",       "guarantee",
                                    "void",           "observer",
                                    "positive",       "public format",
-                                   "referee",        "lattice",
+                                   "oracle",         "lattice",
                                    "ulps",           "digest",
                                    "pairings",       "penalised least squares",
                                    "floors",         "diagonal",

@@ -34,7 +34,7 @@ void put_off_close(std::span<const Query>, std::span<const double>, const TestPa
 }
 
 // The elementary test while a strategy runs: every pair that gets past the certified filter is put off, so
-// that the referee answers it once, however many strategies pass it on. The filter is told in single
+// that the oracle answers it once, however many strategies pass it on. The filter is told in single
 // precision first for every other seed.
 template <bool kSinglePrecisionFirst>
 constexpr ElementaryTest kPutOff{"put off",
@@ -62,7 +62,7 @@ struct Subject {
   std::optional<Rig> rig;
   std::vector<double> of_vertex;          // of the thickness
   Thickness thickness;                    // 0 where no interval has one
-  std::map<FeaturePair, Answer> answers;  // the referee's
+  std::map<FeaturePair, Answer> answers;  // the oracle's
 
   Subject(std::uint64_t seed_in, bool torn_in, bool thick)
       : seed(seed_in),
@@ -120,7 +120,7 @@ struct Subject {
     Report report;
     Crossings start;  // of a strategy that sees starts
   };
-  Result run(const StrategyRow& row, const ElementaryTest& referee) {
+  Result run(const StrategyRow& row, const ElementaryTest& oracle) {
     const bool even = seed % 2 == 0;
     // The earliest contact is known by its time, which cannot be put off.
     const ElementaryTest& test = row.first ? elementary_test_named(even ? "exact" : "filtered_exact")
@@ -143,7 +143,7 @@ struct Subject {
       const auto [entry, fresh] = answers.try_emplace(contact.pair);
       if (fresh)
         entry->second =
-            ask_close(referee, mesh, interval.motion, contact.pair, thickness.of(mesh, contact.pair));
+            ask_close(oracle, mesh, interval.motion, contact.pair, thickness.of(mesh, contact.pair));
       if (entry->second.verdict != Verdict::apart)
         result.found.contacts.push_back({contact.pair, entry->second.verdict, entry->second.time});
     }

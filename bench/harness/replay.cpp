@@ -22,7 +22,7 @@ namespace {
 
 // Judges culling, whatever test is timed. At a distance, the test in integers takes a millisecond a pair, so
 // there the judge is the one that asks doubles first and is as right.
-constexpr char kReferee[] = "exact", kRefereeOfDistances[] = "filtered_exact";
+constexpr char kOracle[] = "exact", kOracleOfDistances[] = "filtered_exact";
 
 // Enough to see that everything works, in seconds; too little to conclude anything from its times.
 constexpr std::size_t kSmokeIntervals = 8, kSmokeRepetitions = 2, kSmokeEvery = 4;
@@ -188,7 +188,7 @@ Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
 Record execute(Input& input, const Replay& replay) {
   const ElementaryTest& timed = elementary_test_named(replay.request.elementary);
   const ElementaryTest& exact =
-      elementary_test_named(input.thickness.length > 0 ? kRefereeOfDistances : kReferee);
+      elementary_test_named(input.thickness.length > 0 ? kOracleOfDistances : kOracle);
   input.threads = replay.request.threads;
 
   Record record;

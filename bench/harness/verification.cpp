@@ -78,7 +78,7 @@ TruthRecord held_against(const OutsideTruth& outside, const TriangleMesh& mesh, 
   return out;
 }
 
-// Leaves the referee's answers to the pairs that both call contacts.
+// Leaves the oracle's answers to the pairs that both call contacts.
 void keep_shared(const ContactSet& truth, ContactSet& answer) {
   ContactSet shared;
   for (const Contact& contact : truth.contacts)

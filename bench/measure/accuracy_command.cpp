@@ -217,7 +217,7 @@ class Study {
         std::printf("time of filtered_exact as a share of newton's, %s: %.3f [%.3f, %.3f]\n",
                     ratio["group"].get<std::string>().c_str(), ratio["value"].get<double>(),
                     ratio["low"].get<double>(), ratio["high"].get<double>());
-    if (contradicted_ > 0) std::printf("the referee contradicts %zu published truths\n", contradicted_);
+    if (contradicted_ > 0) std::printf("the oracle contradicts %zu published truths\n", contradicted_);
     for (const std::string& line : broken_) std::printf("BROKEN PROMISE: %s\n", line.c_str());
   }
 
@@ -310,7 +310,7 @@ void add_accuracy(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("accuracy",
                          "Measure what elementary tests get wrong and what they cost, on the "
-                         "same queries, against the referee.\n\n"
+                         "same queries, against the oracle.\n\n"
                          "  cscd accuracy --smoke\n"
                          "  cscd accuracy --scene rope_contact --set QUERIES --sweep "
                          "cubic@1e-3,cubic@1e-9 --json record.json\n\n"
@@ -319,7 +319,7 @@ void add_accuracy(CLI::App& app) {
                          "distance (of the tests that know distances), the open query set where "
                          "it is\nnamed, and the pairs of scenes that get past bounds and filter. "
                          "Exit status 1 where a test is wrong in\n"
-                         "what it proves, or the referee contradicts a published truth.");
+                         "what it proves, or the oracle contradicts a published truth.");
   command->add_option("--scene", options->scenes, "scenes whose pairs are asked (cscd list scenes)")
       ->delimiter(',');
   command->add_option("--every", options->every, "of their intervals, each K-th")

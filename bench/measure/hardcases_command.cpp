@@ -49,7 +49,7 @@ void add_hardcases(CLI::App& app) {
   auto options = std::make_shared<HardCasesOptions>();
   CLI::App* command = app.add_subcommand(
       "hardcases",
-      "Write the hard elementary queries, with the referee's truth, in the public format (cscd "
+      "Write the hard elementary queries, with the oracle's truth, in the public format (cscd "
       "elementary).\n\n"
       "  cscd hardcases --out FOLDER              the suite: on the lattice and some ulps off it\n"
       "  cscd hardcases --out FOLDER --hardness 1e-9   off the lattice by that share of their size\n\n"

@@ -17,7 +17,7 @@ void add_verify(CLI::App& app) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand(
       "verify",
-      "Hold every strategy to its guarantee on random small noisy meshes, the exact referee judging.\n\n"
+      "Hold every strategy to its guarantee on random small noisy meshes, the exact oracle judging.\n\n"
       "  cscd verify --intervals 10000\n"
       "  cscd verify --intervals 10000 --strategy \"drvbc_fast,drvbc_fast --first\"\n\n"
       "\"STRATEGY --first\" looks for the earliest contact alone.\n\n"

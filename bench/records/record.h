@@ -97,7 +97,7 @@ struct VerificationRecord {
   Accuracy accuracy;  // of the timed elementary test, on the reference's pairs
   std::uint64_t accuracy_tests = 0;
   // One entry for each strategy that brings its own elementary test: how its contacts differ from the
-  // referee's, and the first differences with the pair, the strategy's answer and the true one. Empty without
+  // oracle's, and the first differences with the pair, the strategy's answer and the true one. Empty without
   // such a strategy.
   nlohmann::ordered_json own_tests = nlohmann::ordered_json::array();
   std::optional<TruthRecord> truth = std::nullopt;  // of an input with such a table beside it

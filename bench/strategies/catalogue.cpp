@@ -185,9 +185,9 @@ constexpr std::array kStrategies = {
               [](const StrategyInput& setup) {
                 return make_drvbc_fast(setup, {.name = "drvbc_fast_swept_bounds", .time_linear = false});
               }),
-    of_engine("drvbc_fast_no_stars", "drvbc_fast without stars of vertices",
+    of_engine("drvbc_fast_no_stars", "drvbc_fast without one-rings of vertices",
               [](const StrategyInput& setup) {
-                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .stars = false});
+                return make_drvbc_fast(setup, {.name = "drvbc_fast_no_stars", .one_rings = false});
               }),
     of_engine("drvbc_fast_no_planes", "drvbc_fast without planes of triangles",
               [](const StrategyInput& setup) {
@@ -223,7 +223,7 @@ constexpr std::array kStrategies = {
             },
         .group = kAblation,
         .sees_start = true,
-        .looks_by_signs = true,
+        .drops_by_signs = true,
     },
     Strategy{
         .name = "drvbc_fast_bones",

@@ -33,7 +33,7 @@ Verification verify(const ContactSet& reference, const ContactSet& answer, Guara
   Verification result;
   result.reference_contacts = expected.size();
 
-  // Both sets are the referee's answers, so a contact that the complete reference
+  // Both sets are the oracle's answers, so a contact that the complete reference
   // lacks is a fault of the reference.
   std::vector<Contact> missing, surplus;
   std::set_difference(expected.begin(), expected.end(), found.begin(), found.end(),
@@ -73,8 +73,8 @@ void Accuracy::add(const Accuracy& other) {
   largest_time_error = std::max(largest_time_error, other.largest_time_error);
 }
 
-Accuracy compare_elementary(const ContactSet& referee, const ContactSet& test) {
-  const std::vector<Contact> truth = sorted_by_pair(referee), claims = sorted_by_pair(test);
+Accuracy compare_elementary(const ContactSet& oracle, const ContactSet& test) {
+  const std::vector<Contact> truth = sorted_by_pair(oracle), claims = sorted_by_pair(test);
   Accuracy result;
   auto t = truth.begin();
   auto c = claims.begin();
@@ -96,8 +96,8 @@ Accuracy compare_elementary(const ContactSet& referee, const ContactSet& test) {
   return result;
 }
 
-std::vector<Difference> differences(const ContactSet& referee, const ContactSet& test) {
-  const std::vector<Contact> truth = sorted_by_pair(referee), claims = sorted_by_pair(test);
+std::vector<Difference> differences(const ContactSet& oracle, const ContactSet& test) {
+  const std::vector<Contact> truth = sorted_by_pair(oracle), claims = sorted_by_pair(test);
   std::vector<Contact> missed, invented;
   std::set_difference(truth.begin(), truth.end(), claims.begin(), claims.end(), std::back_inserter(missed),
                       by_pair);

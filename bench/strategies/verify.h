@@ -26,23 +26,23 @@ Verification verify(const ContactSet& reference, const ContactSet& answer, Guara
                     bool starts_embedded);
 
 // How an inexact elementary test answered the feature pairs that a complete culler passed on, compared with
-// the referee's answers for the same pairs.
+// the oracle's answers for the same pairs.
 struct Accuracy {
-  std::uint64_t misses = 0;        // the referee says contact, the test says apart
-  std::uint64_t false_alarms = 0;  // the referee says apart, the test says contact
+  std::uint64_t misses = 0;        // the oracle says contact, the test says apart
+  std::uint64_t false_alarms = 0;  // the oracle says apart, the test says contact
   std::uint64_t undecided = 0;
   double largest_time_error = 0;  // in intervals, over pairs that both call a contact
 
   void add(const Accuracy& other);
 };
-Accuracy compare_elementary(const ContactSet& referee, const ContactSet& test);
+Accuracy compare_elementary(const ContactSet& oracle, const ContactSet& test);
 
-// A feature pair that one of the referee and the test calls a contact and the other
+// A feature pair that one of the oracle and the test calls a contact and the other
 // apart. A missing time means apart.
 struct Difference {
   FeaturePair pair;
   std::optional<double> truth, said;
 };
-std::vector<Difference> differences(const ContactSet& referee, const ContactSet& test);
+std::vector<Difference> differences(const ContactSet& oracle, const ContactSet& test);
 
 }  // namespace cscd::bench

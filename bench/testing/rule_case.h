@@ -9,7 +9,7 @@
 #include "core/mesh/test_shapes.h"
 
 // What the tests of the soundness rules share: one interval of a mesh with one bone, asked of any
-// strategy with the exact referee. One test for each way in which the contract is broken silently, on whole
+// strategy with the exact oracle. One test for each way in which the contract is broken silently, on whole
 // strategies; more of the same stand beside the units. "Mutation" says which change to the house made the
 // test fail when it was tried. Rule error-bound is in core/radial/orientation_test.cpp, rule one-field in
 // core/radial/cluster_hierarchy_test.cpp.

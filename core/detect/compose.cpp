@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/stage_clock.h"
-#include "core/base/team.h"
+#include "core/base/thread_pool.h"
 #include "core/detect/exclusions.h"
 #include "core/detect/feature_owners.h"
 #include "core/detect/feature_pair_set.h"
@@ -59,7 +59,7 @@ class PairTester : public TrianglePairSink {
         first_only_(setup.first_only),
         exclusions_(setup.exclusions),
         options_(std::move(options)),
-        team_(options_.threads),
+        pool_(options_.threads),
         clock_(clock),
         plain_sign_(setup.pipeline == Pipeline::published),
         loose_(mesh_, setup.reference, options_.own_vertices) {
@@ -130,7 +130,7 @@ class PairTester : public TrianglePairSink {
     if (alone && may_own() && !owners_) owners_.emplace(mesh_);
     owned_alone_ = alone && owners_;
   }
-  bool looks_for_first() const override { return first_; }
+  bool first_only() const override { return first_; }
   double until() const override { return first_ ? cut() : 1; }
   void begin_again() override {
     flush();
@@ -262,9 +262,9 @@ class PairTester : public TrianglePairSink {
   // Each range of pairs is filtered into a list of its own, and the lists are joined in order.
   void filter_carried() {
     const std::span<const CarriedPairs> carried = carried_;
-    const std::size_t ranges = team_.ranges_of(carried.size(), kFilteredTogether);
+    const std::size_t ranges = pool_.ranges_of(carried.size(), kFilteredTogether);
     if (lists_.size() < ranges) lists_.resize(ranges);  // lists that are not needed keep their memory
-    team_.ranges(carried.size(), kFilteredTogether,
+    pool_.ranges(carried.size(), kFilteredTogether,
                  [&](std::size_t first, std::size_t last, std::size_t part) {
                    lists_[part].clear();
                    filter(mesh_, *motion_, carried.subspan(first, last - first), test_.single_precision_first,
@@ -330,7 +330,7 @@ class PairTester : public TrianglePairSink {
     const std::span<const Query> queries = tests.queries;
     const std::span<const double> thickness = tests.thickness;
     const std::span<Answer> answers = tests.answers;
-    team_.ranges(queries.size(), kAskedTogether, [&](std::size_t first, std::size_t last, std::size_t) {
+    pool_.ranges(queries.size(), kAskedTogether, [&](std::size_t first, std::size_t last, std::size_t) {
       const std::size_t count = last - first;
       if (thickness_.is_zero())
         test_.answer(queries.subspan(first, count), answers.subspan(first, count));
@@ -354,7 +354,7 @@ class PairTester : public TrianglePairSink {
   const bool first_only_;
   const Exclusions* const exclusions_;
   PairOptions options_;
-  Team team_;
+  ThreadPool pool_;
   StageClock& clock_;
   const bool plain_sign_;  // the published filter
   LooseVertices loose_;
@@ -422,7 +422,7 @@ class ComposedDetector : public Detector {
       tester_.finish_interval();
     }
     tester_.trust_owners(true);
-    if (!out.contacts.empty() && !tester_.looks_for_first())
+    if (!out.contacts.empty() && !tester_.first_only())
       if (const auto rest = culler_->cull_rest(tester_)) {
         *report.cull.bvot += *rest;
         tester_.finish_interval();

@@ -41,7 +41,7 @@ class TrianglePairSink {
   std::uint64_t count() const { return count_; }
   bool closed() const { return closed_; }
   // Returns whether until() may come to be less than 1, and asks the culler to call tell() now and then.
-  virtual bool looks_for_first() const { return false; }
+  virtual bool first_only() const { return false; }
   // From here on, with `alone`, a pair of triangles needs to be tested only for the feature pairs that it
   // owns (feature_owners.h): of every other feature pair that it carries, the culler passes on the owners, or
   // has proven the feature pair apart.

@@ -149,7 +149,7 @@ struct TwoTriangles {
   }
 };
 
-// What is dropped, and what is farther apart before some time, is so by the referee.
+// What is dropped, and what is farther apart before some time, is so by the oracle.
 // Mutations: no distance; no length of the direction; one end alone; the error bound is zero.
 TEST(DistanceFilter, NothingThatComesNearIsDropped) {
   const ElementaryTest& exact = *find_elementary_test("exact");

@@ -109,7 +109,7 @@ struct Strategy {
   // A row with a group is run only where the row or its group is named; rows without one are run wherever the
   // input allows it.
   std::string_view group = "";
-  bool own_test = false;  // brings its own elementary test, whose answers are compared with the referee's
+  bool own_test = false;  // brings its own elementary test, whose answers are compared with the oracle's
   // Whether its detectors say which triangles cross at the start (Step::crossings). For that,
   // a pair of triangles may be dropped only by a proof that, at any time of the interval, the two meet
   // nowhere but in what they share. A proof that no feature pair of theirs touches is not enough, because an
@@ -120,7 +120,7 @@ struct Strategy {
   bool knows_distance = false;
   // Whether its detectors, told that a start of a closed mesh is embedded, drop pairs by the orientation of
   // triangles alone (Step::starts_embedded), which takes less than half the time.
-  bool looks_by_signs = false;
+  bool drops_by_signs = false;
 };
 
 }  // namespace cscd

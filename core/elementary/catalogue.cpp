@@ -12,17 +12,17 @@
 namespace cscd {
 namespace {
 
-// The referee behind two certified filters. The filters' "apart" is a proof, so every answer is the
-// referee's.
+// The oracle behind two certified filters. The filters' "apart" is a proof, so every answer is the
+// oracle's.
 template <class Query>
-Answer filtered_referee(const Query& query) {
+Answer filtered_oracle(const Query& query) {
   if (never_coplanar(query) || relative_boxes_apart(query)) return {Verdict::apart, 0};
   const auto time = exact::first_contact(query);
   return time ? Answer{Verdict::contact, time->lo} : Answer{Verdict::apart, 0};
 }
 
 template <class Query>
-Answer filtered_close_referee(const Query& query, double r) {
+Answer filtered_close_oracle(const Query& query, double r) {
   if (relative_boxes_apart(query, r)) return {Verdict::apart, 0};
   const auto time = exact::first_closeness(query, r);
   return time ? Answer{Verdict::contact, time->lo} : Answer{Verdict::apart, 0};
@@ -69,13 +69,13 @@ constexpr std::array kTests = {
     },
     ElementaryTest{
         .name = "exact",
-        .source = "the referee: exact arithmetic behind certified filters",
+        .source = "the oracle: exact arithmetic behind certified filters",
         .apart_is_proof = true,
         .contact_is_proof = true,
-        .ask_vertex_faces = one_by_one<filtered_referee<MovingVertexFace>>,
-        .ask_edge_edges = one_by_one<filtered_referee<MovingEdgeEdge>>,
-        .close_vertex_faces = close_one_by_one<filtered_close_referee<MovingVertexFace>>,
-        .close_edge_edges = close_one_by_one<filtered_close_referee<MovingEdgeEdge>>,
+        .ask_vertex_faces = one_by_one<filtered_oracle<MovingVertexFace>>,
+        .ask_edge_edges = one_by_one<filtered_oracle<MovingEdgeEdge>>,
+        .close_vertex_faces = close_one_by_one<filtered_close_oracle<MovingVertexFace>>,
+        .close_edge_edges = close_one_by_one<filtered_close_oracle<MovingEdgeEdge>>,
     },
     ElementaryTest{
         .name = "cubic",

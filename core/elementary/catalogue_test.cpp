@@ -1,4 +1,4 @@
-// Compares the promises of all rows of the catalogue with the referee. A new row is tested without a change
+// Compares the promises of all rows of the catalogue with the oracle. A new row is tested without a change
 // here.
 #include "core/elementary/catalogue.h"
 

@@ -14,7 +14,7 @@ using test::still;
 
 constexpr TestParameters kFine{.tolerance = 1e-10};
 
-TEST(Cubic, AgreesWithTheRefereeWhereFeaturesCross) {
+TEST(Cubic, AgreesWithTheOracleWhereFeaturesCross) {
   QueryMaker make{3};
   for (int i = 0; i < 2000; ++i) {
     const double t = make.uniform(0.01, 0.99), u = make.uniform(0.01, 0.49), v = make.uniform(0.01, 0.49);

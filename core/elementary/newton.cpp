@@ -17,7 +17,7 @@
 // filter's "apart" is a proof for the coordinates as they are in that precision. What comes after it is not:
 // an enclosure is found with rounded coefficients, and touching is judged at its middle within a tolerance.
 // Hence contacts may be missed or invented near the limits of the precision; the harness counts both against
-// the exact referee. Degenerate cases follow rule degenerate: a cubic that may be zero throughout is reduced
+// the exact oracle. Degenerate cases follow rule degenerate: a cubic that may be zero throughout is reduced
 // to two dimensions, and what is left open is `undecided`, never "apart".
 namespace cscd {
 namespace {

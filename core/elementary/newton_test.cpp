@@ -26,8 +26,8 @@ Answer newton(const MovingEdgeEdge& q) {
   return newton_edge_edge(q);
 }
 
-// Compares newton's answers to a family of queries with the referee's.
-struct RefereeComparison {
+// Compares newton's answers to a family of queries with the oracle's.
+struct OracleComparison {
   int contacts = 0, misses = 0, false_alarms = 0, undecided = 0;
   double largest_time_error = 0;
   std::string first_miss, first_false_alarm;
@@ -63,8 +63,8 @@ class Newton : public testing::Test {
   QueryMaker make_{7};
 };
 
-TEST_F(Newton, AgreesWithTheRefereeOnQueriesOfNoParticularKind) {
-  RefereeComparison vf, ee;
+TEST_F(Newton, AgreesWithTheOracleOnQueriesOfNoParticularKind) {
+  OracleComparison vf, ee;
   for (int i = 0; i < 6000; ++i) {
     vf.add<MovingVertexFace>(make_.any());
     ee.add<MovingEdgeEdge>(make_.any());
@@ -75,8 +75,8 @@ TEST_F(Newton, AgreesWithTheRefereeOnQueriesOfNoParticularKind) {
   EXPECT_GT(ee.contacts, 200);
 }
 
-TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesCross) {
-  RefereeComparison vf, ee;
+TEST_F(Newton, AgreesWithTheOracleWhereFeaturesCross) {
+  OracleComparison vf, ee;
   for (int i = 0; i < 3000; ++i) {
     const double t = make_.uniform(0.01, 0.99), u = make_.uniform(0.01, 0.49), v = make_.uniform(0.01, 0.49);
     vf.add<MovingVertexFace>(test::vertex_meets_face(make_, t, u, v));
@@ -89,8 +89,8 @@ TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesCross) {
 }
 
 // Features touch or miss at any of their borders, by a hundred thousandth of the feature's size.
-TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesGraze) {
-  RefereeComparison vf, ee;
+TEST_F(Newton, AgreesWithTheOracleWhereFeaturesGraze) {
+  OracleComparison vf, ee;
   for (int i = 0; i < 3000; ++i) {
     const double t = make_.uniform(0.05, 0.95), hair = i % 2 ? 1e-5 : -1e-5;
     const double along = make_.uniform(0.1, 0.9);
@@ -103,7 +103,7 @@ TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesGraze) {
   }
   vf.expect_spotless();
   ee.expect_spotless();
-  for (const RefereeComparison* comparison : {&vf, &ee}) {
+  for (const OracleComparison* comparison : {&vf, &ee}) {
     EXPECT_GT(comparison->contacts, 1000);
     EXPECT_LT(comparison->contacts, 2000);
   }
@@ -111,7 +111,7 @@ TEST_F(Newton, AgreesWithTheRefereeWhereFeaturesGraze) {
 
 // Rules degenerate and closed-interval. Small integer coordinates meet every degenerate case.
 TEST_F(Newton, NeverSaysApartOfDegenerateFeaturesThatTouch) {
-  RefereeComparison vf, ee;
+  OracleComparison vf, ee;
   for (int i = 0; i < 12'000; ++i) {
     vf.add<MovingVertexFace>(make_.lattice(1 + i % 3));
     ee.add<MovingEdgeEdge>(make_.lattice(1 + i % 3));
@@ -120,7 +120,7 @@ TEST_F(Newton, NeverSaysApartOfDegenerateFeaturesThatTouch) {
   EXPECT_EQ(ee.misses, 0) << ee.first_miss;
   EXPECT_EQ(vf.false_alarms, 0) << vf.first_false_alarm;
   EXPECT_EQ(ee.false_alarms, 0) << ee.first_false_alarm;
-  for (const RefereeComparison* comparison : {&vf, &ee}) EXPECT_GT(comparison->contacts, 3000);
+  for (const OracleComparison* comparison : {&vf, &ee}) EXPECT_GT(comparison->contacts, 3000);
   RecordProperty("undecided of 12000, vertex-face", vf.undecided);
   RecordProperty("undecided of 12000, edge-edge", ee.undecided);
 }
@@ -323,7 +323,7 @@ TEST_F(Newton, MixedScalesAreUndecidedOrRight) {
 }
 
 // Single precision is right for features that cross clearly.
-TEST_F(Newton, FloatsAgreeWithTheRefereeWhereFeaturesCross) {
+TEST_F(Newton, FloatsAgreeWithTheOracleWhereFeaturesCross) {
   int contacts = 0, wrong = 0;
   for (int i = 0; i < 3000; ++i) {
     const double t = make_.uniform(0.05, 0.95), u = make_.uniform(-0.3, 0.45), v = make_.uniform(0.05, 0.45);

@@ -39,7 +39,7 @@ inline constexpr Strategy kDrvbcFastComplete{
         },
     .sees_start = true,
     .knows_distance = true,
-    .looks_by_signs = true,
+    .drops_by_signs = true,
 };
 
 }  // namespace cscd

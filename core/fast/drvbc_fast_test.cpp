@@ -118,7 +118,7 @@ TEST(DrvbcFast, FindsTheSameWithoutAnyOfItsIdeas) {
   const std::uint64_t passed_on = scene.detect({.complete = true}, all).cull.pctp;
   all.sort();
   for (const DrvbcFastOptions& options : {DrvbcFastOptions{.time_linear = false, .complete = true},
-                                          DrvbcFastOptions{.stars = false, .complete = true},
+                                          DrvbcFastOptions{.one_rings = false, .complete = true},
                                           DrvbcFastOptions{.planes = false, .complete = true}}) {
     ContactSet found;
     EXPECT_GT(scene.detect(options, found).cull.pctp, passed_on);

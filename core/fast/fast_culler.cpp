@@ -8,15 +8,15 @@ namespace {
 
 constexpr std::size_t kRange = 512;           // patches that are looked at together, 20 microseconds of work
 constexpr std::size_t kCappedRange = 128;     // patches where caps are looked at too
-constexpr std::size_t kAhead = 2;             // positions are fetched so many patches before the look
+constexpr std::size_t kAhead = 2;             // positions are fetched so many patches before the pass
 constexpr std::size_t kSampled = 256;         // about so many patches are asked how far they move
 constexpr std::size_t kWorthStopping = 1024;  // patches; the descent of fewer is too short to be stopped
 // A part of the interval is cut short where that spares at least so much of it.
 constexpr double kWorthCutting = 1.0 / 2;
 // Where the first contact alone is wanted, a part whose descent takes more than so many overlap tests for
-// each patch is halved, which is about what it costs to look at a part.
+// each patch is halved, which is about what a pass over a part costs.
 constexpr std::uint64_t kMostBySigns = 32, kMostByCaps = 64;
-// At a distance, a look by signs that leaves more pairs near on the surface for each patch takes longer than
+// At a distance, a pass by signs that leaves more pairs near on the surface for each patch takes longer than
 // one by caps, which leaves none of them.
 constexpr std::size_t kMostNear = 8;
 constexpr std::size_t kMostCollected = std::size_t{1} << 22;  // pairs, before parts are given up
@@ -40,11 +40,11 @@ FastCuller::FastCuller(const StrategyInput& setup, CutSurface cut, const DrvbcFa
       signs_suffice_(options.complete && setup.mesh.closed_and_oriented()),
       positions_(setup.reference),
       certificates_(setup.mesh, cut_.tree, cut_.covers, capped(setup, cut_.covers, options)),
-      stars_(setup.mesh),
-      team_(setup.threads),
-      descent_({cut_.tree, positions_, certificates_, options.stars ? &stars_ : nullptr, options.time_linear,
-                options.planes},
-               team_),
+      one_rings_(setup.mesh),
+      pool_(setup.threads),
+      descent_({cut_.tree, positions_, certificates_, options.one_rings ? &one_rings_ : nullptr,
+                options.time_linear, options.planes},
+               pool_),
       bounds_(cut_.tree.nodes.size()) {
   use_covers(options.covers);
 }
@@ -64,27 +64,27 @@ void FastCuller::refit_beginning(const Step& step, double until) {
 bool FastCuller::classify(const Step& step) {
   by_signs_ = step.starts_embedded && signs_suffice_ && thickness_.is_uniform() &&
               (local_thickness_ == 0 || near_ <= kMostNear * patch_count());
-  look_at_positions();
+  classify_all();
   return true;
 }
 
-void FastCuller::look_at_positions() {
+void FastCuller::classify_all() {
   if (following_) following_->mend(certificates_);
   if (following_ && tests_ && positions_.known())
     following_->follow(motion_->start(), *tests_, certificates_);
-  const bool by_caps = looks_by_caps();
+  const bool by_caps = uses_caps();
   certificates_.use_contour_test(by_caps);
-  certificates_.start(positions_, team_, local_thickness_);
-  team_.ranges(patch_count(), by_caps ? kCappedRange : kRange,
+  certificates_.start(positions_, pool_, local_thickness_);
+  pool_.ranges(patch_count(), by_caps ? kCappedRange : kRange,
                [&](std::size_t first, std::size_t last, std::size_t) {
-                 for (std::size_t p = first; p < last; ++p) look(p);
+                 for (std::size_t p = first; p < last; ++p) classify(p);
                });
   unite_bounds();
-  certificates_.finish(team_);
+  certificates_.finish(pool_);
 }
 
 void FastCuller::unite_bounds() {
-  cut_.tree.for_each_inner_upwards(team_, [&](std::size_t n, const PatchTree::Node& node) {
+  cut_.tree.for_each_inner_upwards(pool_, [&](std::size_t n, const PatchTree::Node& node) {
     bounds_[n] = united(bounds_[node.left()], bounds_[node.right()]);
   });
   if (!positions_.known()) std::fill(bounds_.begin(), bounds_.end(), unbounded());
@@ -102,13 +102,13 @@ std::optional<std::uint64_t> FastCuller::cull_rest(TrianglePairSink& sink) {
   by_signs_ = false;
   tests_.reset();  // the cover stays as it is within an interval
   refit({.motion = *motion_, .thickness = thickness_});
-  look_at_positions();
+  classify_all();
   return descend(sink);
 }
 
 // Passes on the pairs of the interval that has been looked at, and returns the number of overlap tests.
 std::uint64_t FastCuller::descend(TrianglePairSink& sink) {
-  if (sink.looks_for_first()) return descend_to_first(sink);
+  if (sink.first_only()) return descend_to_first(sink);
   if (moves_far()) return cull_parts(sink);
   return *(tests_ = run(sink));
 }
@@ -120,7 +120,7 @@ std::uint64_t FastCuller::run(TrianglePairSink& sink, std::uint64_t most) {
 
 // Passes on the pairs near on the surface of which signs say nothing (certify/tall_rings.h).
 void FastCuller::pass_on_near(TrianglePairSink& sink) {
-  if (local_thickness_ == 0 || looks_by_caps()) return;
+  if (local_thickness_ == 0 || uses_caps()) return;
   near_ = 0;
   sink.test_owned(true);
   certificates_.for_each_unsettled_pair([&](TriangleId a, TriangleId b) {
@@ -150,18 +150,18 @@ std::uint64_t FastCuller::descend_to_first(TrianglePairSink& sink) {
     if (done.stopped) {
       if (part_.first == 0) sink.begin_again();
       const double share = std::clamp(1 / (done.growth - 1), 1.0 / 8, 1.0 / 2);
-      look_at({part_.first, part_.first + share * (part_.last - part_.first)});
+      classify_within({part_.first, part_.first + share * (part_.last - part_.first)});
       continue;
     }
     sink.flush();
     if (part_.last == end || sink.until() <= part_.last || sink.closed()) return tests;
     if (part_.first == 0) sink.leave_start();
-    look_at({part_.last, std::min({end, sink.until(), 3 * part_.last - 2 * part_.first})});
+    classify_within({part_.last, std::min({end, sink.until(), 3 * part_.last - 2 * part_.first})});
   }
 }
 
 // Cuts the part short that is looked at, where the sink needs pairs up to a time alone that lies well before
-// its end. From here on bounds, planes and stars are about what is left of the part. Certificates stay as
+// its end. From here on bounds, planes and one-rings are about what is left of the part. Certificates stay as
 // they are, because what they say of the whole part they say of its beginning too. Those by caps, which lose
 // most where the surface moves far, are made anew there: they prove pairs apart one by one, so that some
 // ranges of a descent may go by one of them and others by the other.
@@ -171,14 +171,14 @@ std::optional<std::uint64_t> FastCuller::cut_short(TrianglePairSink& sink) {
   if (until <= part_.first || until - part_.first > kWorthCutting * length) return std::nullopt;
   const Moved moved = move_apart();
   if (!can_tell_in_between(moved)) return std::nullopt;
-  const Part beginning{part_.first, until};
-  if (looks_by_caps() && moved.far()) {
-    look_at(beginning);
+  const TimeRange beginning{part_.first, until};
+  if (uses_caps() && moved.far()) {
+    classify_within(beginning);
     pass_on_near(sink);
     return patience();
   }
   move_to(beginning);
-  team_.ranges(patch_count(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
+  pool_.ranges(patch_count(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
     for (std::size_t p = first; p < last; ++p) {
       fetch(p + kAhead);
       bound(p, load(positions_.records(), cut_.tree.patches[p].vertex));
@@ -191,7 +191,7 @@ std::optional<std::uint64_t> FastCuller::cut_short(TrianglePairSink& sink) {
 // Returns how many overlap tests the descent of a part may take before the part is halved.
 std::uint64_t FastCuller::patience() const {
   if (part_.last - part_.first <= 1.0 / kFinest || !moves_far()) return SharedDescent::kAnyNumber;
-  return (looks_by_caps() ? kMostByCaps : kMostBySigns) * patch_count();
+  return (uses_caps() ? kMostByCaps : kMostBySigns) * patch_count();
 }
 
 bool FastCuller::moves_far() const {
@@ -236,7 +236,7 @@ std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink) {
   use_whole_step_ = false;
   const std::uint64_t tests = cull_part();
   if (use_whole_step_) {
-    look_at({0, 1});
+    classify_within({0, 1});
     return tests + *(tests_ = run(sink));
   }
   const auto ends = [](const TrianglePair& pair) { return std::pair(pair.a, pair.b); };
@@ -253,7 +253,7 @@ std::uint64_t FastCuller::cull_parts(TrianglePairSink& sink) {
 // which the surface moves far is halved if its descent and its pairs cost too much.
 std::uint64_t FastCuller::cull_part() {
   if (use_whole_step_) return 0;
-  const Part part = part_;
+  const TimeRange part = part_;
   const bool can_split = part.last - part.first > 1.0 / kFinest && move_apart().far();
   const std::uint64_t most = can_split ? options_.long_descent * patch_count() : SharedDescent::kAnyNumber;
   const std::size_t before = found_.pairs.size();
@@ -267,8 +267,8 @@ std::uint64_t FastCuller::cull_part() {
   found_.pairs.resize(before);
   std::uint64_t tests = std::min(*tests_, most);  // how many more were made depends on the number of threads
   const double middle = (part.first + part.last) / 2;
-  for (const Part& half : {Part{part.first, middle}, Part{middle, part.last}}) {
-    look_at(half);
+  for (const TimeRange& half : {TimeRange{part.first, middle}, TimeRange{middle, part.last}}) {
+    classify_within(half);
     use_whole_step_ |= !positions_.known();  // every pair of triangles would be collected
     tests += cull_part();
   }
@@ -276,19 +276,19 @@ std::uint64_t FastCuller::cull_part() {
 }
 
 // Looks at a part of the interval. Covers stay as they are within an interval.
-void FastCuller::look_at(const Part& part) {
+void FastCuller::classify_within(const TimeRange& part) {
   tests_.reset();
   move_to(part);
-  look_at_positions();
+  classify_all();
 }
 
 // Takes over the positions of a part of the interval.
-void FastCuller::move_to(const Part& part) {
+void FastCuller::move_to(const TimeRange& part) {
   part_ = part;
   if (part.first == 0 && part.last == 1) {
-    positions_.update(*motion_, team_);
+    positions_.update(*motion_, pool_);
   } else if (part.first == 0) {
-    positions_.update_beginning(*motion_, part.last, team_);
+    positions_.update_beginning(*motion_, part.last, pool_);
   } else {
     const std::span<const Vec3> start = motion_->start(), end = motion_->end();
     Eigen::Array3d largest = Eigen::Array3d::Zero();
@@ -300,7 +300,7 @@ void FastCuller::move_to(const Part& part) {
       largest = largest.max(start[v].array().abs()).max(end[v].array().abs());
     }
     // A position in between, start + t (end - start), rounds three times.
-    positions_.update(Motion(part_start_, part_end_), team_, 0x1p-50 * largest.maxCoeff());
+    positions_.update(Motion(part_start_, part_end_), pool_, 0x1p-50 * largest.maxCoeff());
   }
   local_thickness_ = positions_.in_local(thickness_.largest());
   grid_ = grid_of(positions_.error());
@@ -312,11 +312,11 @@ void FastCuller::forget() {
   tests_.reset();
 }
 
-void FastCuller::look(std::size_t patch) {
+void FastCuller::classify(std::size_t patch) {
   fetch(patch + kAhead);
   const PatchLanes lanes = load(positions_.records(), cut_.tree.patches[patch].vertex);
   bound(patch, lanes);
-  certificates_.look(patch, lanes);
+  certificates_.classify(patch, lanes);
 }
 
 inline void FastCuller::bound(std::size_t patch, const PatchLanes& lanes) {

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/team.h"
+#include "core/base/thread_pool.h"
 #include "core/detect/culler.h"
 #include "core/detect/strategy.h"
 #include "core/fast/adaptive_cover.h"
 #include "core/fast/certify/certificates.h"
-#include "core/fast/certify/stars.h"
+#include "core/fast/certify/one_rings.h"
 #include "core/fast/classify/grid_bounds.h"
 #include "core/fast/options.h"
 #include "core/fast/patch_descent.h"
@@ -58,7 +58,7 @@ class FastCuller : public Culler {
   bool classify(const Step& step) override;
   CullCounts cull(TrianglePairSink& sink) override;
   std::optional<std::uint64_t> cull_rest(TrianglePairSink& sink) override;
-  bool keeps_all() const override { return looks_by_caps(); }
+  bool keeps_all() const override { return uses_caps(); }
   void forget() override;
   // Returns nothing after an exception has broken off a change of clusters, until the next interval.
   std::vector<std::byte> saved_preparation() const override {
@@ -70,11 +70,11 @@ class FastCuller : public Culler {
 
   std::size_t patch_count() const { return cut_.tree.patches.size(); }
   // The number of looks (certify/certificates.h) that one interval takes.
-  std::size_t looks_per_interval() const { return certificates_.looks_per_interval(); }
+  std::size_t orientation_passes() const { return certificates_.orientation_passes(); }
 
  private:
   // A part of the interval, from one time to another.
-  struct Part {
+  struct TimeRange {
     double first = 0, last = 1;
   };
   static constexpr double kFinest = 64;  // parts are not halved further than that
@@ -95,7 +95,7 @@ class FastCuller : public Culler {
   Moved move_apart() const;
   bool can_tell_in_between(const Moved& moved) const;
   bool moves_far() const;
-  bool looks_by_caps() const { return options_.complete && !by_signs_; }
+  bool uses_caps() const { return options_.complete && !by_signs_; }
   std::uint64_t descend(TrianglePairSink& sink);
   std::uint64_t descend_to_first(TrianglePairSink& sink);
   std::uint64_t run(TrianglePairSink& sink, std::uint64_t most = SharedDescent::kAnyNumber);
@@ -105,10 +105,10 @@ class FastCuller : public Culler {
   std::uint64_t patience() const;
   std::uint64_t cull_parts(TrianglePairSink& sink);
   std::uint64_t cull_part();
-  void move_to(const Part& part);
-  void look_at(const Part& part);
-  void look_at_positions();
-  void look(std::size_t patch);
+  void move_to(const TimeRange& part);
+  void classify_within(const TimeRange& part);
+  void classify_all();
+  void classify(std::size_t patch);
   void bound(std::size_t patch, const PatchLanes& lanes);
   void unite_bounds();
   void fetch(std::size_t patch) const;
@@ -123,8 +123,8 @@ class FastCuller : public Culler {
   bool by_signs_ = false;  // of a complete culler
   LocalPositions positions_;
   Certificates certificates_;
-  Stars stars_;
-  Team team_;
+  OneRings one_rings_;
+  ThreadPool pool_;
   SharedDescent descent_;
   Grid grid_{1};
   std::vector<NodeBounds> bounds_;  // [nodes]
@@ -133,8 +133,8 @@ class FastCuller : public Culler {
   std::optional<Motion> motion_;
   Thickness thickness_;
   float local_thickness_ = 0;  // the largest of any pair, in local units
-  std::size_t near_ = 0;       // pairs near on the surface that the last look by signs left
-  Part part_;                  // that is looked at
+  std::size_t near_ = 0;       // pairs near on the surface that the last pass by signs left
+  TimeRange part_;             // that is looked at
   // Of long steps alone: the ends of a part, and what its descents have found.
   std::vector<Vec3> part_start_, part_end_;
   bool use_whole_step_ = false;  // whether the interval has to be looked at as a whole

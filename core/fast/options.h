@@ -12,10 +12,10 @@ struct DrvbcFastOptions {
   // Each row of the ablation leaves out one of the next six ideas, or fixes the choice of clusters.
   std::size_t covers = 3;  // the largest number of covers to look from
   bool time_linear =
-      true;             // bounds at both ends of the interval (classify/grid_bounds.h); false: swept bounds
-  bool stars = true;    // certify/stars.h
-  bool planes = true;   // certify/parting.h
-  bool follows = true;  // adaptive_cover.h
+      true;               // bounds at both ends of the interval (classify/grid_bounds.h); false: swept bounds
+  bool one_rings = true;  // certify/one_rings.h
+  bool planes = true;     // certify/parting.h
+  bool follows = true;    // adaptive_cover.h
   // A step in which the surface moves far is looked at in parts (fast_culler.h) if its descent takes more
   // than this many overlap tests for each patch; kNever: no step is looked at in parts.
   std::uint32_t long_descent = 288;

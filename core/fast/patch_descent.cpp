@@ -10,7 +10,7 @@ PatchDescent::PatchDescent(const DescentInput& input)
     : input_(input),
       nodes_(input.tree.nodes),
       patches_(input.tree.patches),
-      star_(input.positions.records().size()),
+      one_ring_(input.positions.records().size()),
       triangle_bounds_(input.tree.patches.size()) {}
 
 void PatchDescent::start_interval(std::span<const NodeBounds> bounds, const Grid& grid, std::uint64_t most) {
@@ -20,7 +20,7 @@ void PatchDescent::start_interval(std::span<const NodeBounds> bounds, const Grid
   tests_ = 0;
   patch_pairs_ = {};
   triangle_bounds_.start_interval();
-  std::fill(star_.begin(), star_.end(), Star::unknown);
+  std::fill(one_ring_.begin(), one_ring_.end(), OneRing::unknown);
 }
 
 void PatchDescent::descend(NodePair at, TrianglePairSink& sink) {
@@ -139,10 +139,10 @@ inline void PatchDescent::row(std::size_t p, std::size_t lane, std::size_t q, Ma
   if (left != 0) pass_on(p, lane, q, left);
 }
 
-// Removes the triangles that the star of a common corner proves apart.
+// Removes the triangles that the one-ring of a common corner proves apart.
 inline Mask16 PatchDescent::not_flat(std::size_t p, std::size_t lane, Mask16 wanted,
                                      const SharedVertices& common) {
-  if (input_.stars == nullptr) return wanted;
+  if (input_.one_rings == nullptr) return wanted;
   const Patch& patch = patches_[p];
   for (const Places16& place : patch.corner) {
     const Mask16 sharing = common.at[place[lane]];
@@ -222,10 +222,11 @@ const TriangleBounds& PatchDescent::bounds_of_triangles(std::size_t p) {
 }
 
 inline bool PatchDescent::flat(VertexId vertex) {
-  Star& star = star_[+vertex];
-  if (star == Star::unknown)
-    star = input_.stars->flat(vertex, input_.positions, grid_.distance()) ? Star::flat : Star::uncertain;
-  return star == Star::flat;
+  OneRing& one_ring = one_ring_[+vertex];
+  if (one_ring == OneRing::unknown)
+    one_ring = input_.one_rings->flat(vertex, input_.positions, grid_.distance()) ? OneRing::flat
+                                                                                  : OneRing::uncertain;
+  return one_ring == OneRing::flat;
 }
 
 }  // namespace cscd::fast

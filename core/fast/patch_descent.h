@@ -12,11 +12,11 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/base/team.h"
+#include "core/base/thread_pool.h"
 #include "core/detect/culler.h"
 #include "core/fast/certify/certificates.h"
+#include "core/fast/certify/one_rings.h"
 #include "core/fast/certify/parting.h"
-#include "core/fast/certify/stars.h"
 #include "core/fast/classify/grid_bounds.h"
 
 namespace cscd::fast {
@@ -32,7 +32,7 @@ struct DescentInput {
   const PatchTree& tree;
   const LocalPositions& positions;
   const Certificates& certificates;
-  const Stars* stars;  // null: without stars
+  const OneRings* one_rings;  // null: without one-rings
   bool time_linear;
   // Whether planes of triangles are asked. They prove that nothing touches, so they are not asked where
   // bounds have a margin.
@@ -83,8 +83,8 @@ class OnDemand {
 };
 
 // The descent over the tree of patches. It passes on the pairs of triangles that no cover certifies and that
-// bounds, stars and planes do not prove apart. Bounds of triangles, and which stars are flat, are computed on
-// demand.
+// bounds, one-rings and planes do not prove apart. Bounds of triangles, and which one-rings are flat, are
+// computed on demand.
 class alignas(64) PatchDescent {  // aligned so that no cache line is shared with another thread's descent
  public:
   // Everything that `input` refers to must outlive the descent.
@@ -112,7 +112,7 @@ class alignas(64) PatchDescent {  // aligned so that no cache line is shared wit
   void stop_after(std::uint64_t tests) { most_tests_ = tests; }
 
  private:
-  enum class Star : std::uint8_t { unknown, flat, uncertain };
+  enum class OneRing : std::uint8_t { unknown, flat, uncertain };
 
   enum class Depth { one, all };
 
@@ -141,7 +141,7 @@ class alignas(64) PatchDescent {  // aligned so that no cache line is shared wit
   const std::span<const Patch> patches_;
   std::span<const NodeBounds> bounds_;
   Grid grid_{1};
-  std::vector<Star> star_;  // [vertices]: what is known of its star
+  std::vector<OneRing> one_ring_;  // [vertices]: what is known of its one-ring
   OnDemand<TriangleBounds> triangle_bounds_;
   TrianglePairSink* sink_ = nullptr;
   // Pairs that wait until there are sixteen to ask about together. Behind them stand pairs of earlier rounds.
@@ -159,14 +159,14 @@ class alignas(64) PatchDescent {  // aligned so that no cache line is shared wit
 // A pair of triangles that is passed on to the elementary test costs about as much as so many overlap tests.
 inline constexpr std::uint64_t kTestsOfPair = 40;
 
-// The descent of one interval by a team of threads. The descent from the root is split into pairs of nodes,
+// The descent of one interval by a pool of threads. The descent from the root is split into pairs of nodes,
 // in the order of the descent, and ranges of these are shared out. Each thread has its own scratch memory,
 // and each range its own list of pairs of triangles. The lists are joined in order, so the sink sees the same
 // pairs in the same order, and the counters are the same, for any number of threads.
 class SharedDescent {
  public:
-  // Whatever `input` refers to, and the team, must outlive the descent.
-  SharedDescent(const DescentInput& input, const Team& team);
+  // Whatever `input` refers to, and the pool, must outlive the descent.
+  SharedDescent(const DescentInput& input, const ThreadPool& pool);
 
   // Runs the descent of one interval and returns the number of overlap tests. `bounds`, [nodes], are in steps
   // of `grid`. A descent that takes more than `most` tests may stop, and has then passed on only some pairs.
@@ -210,7 +210,7 @@ class SharedDescent {
   static void pass_on(KeptPairs& kept, TrianglePairSink& sink);
 
   const DescentInput input_;
-  const Team& team_;
+  const ThreadPool& pool_;
   std::vector<PatchDescent> by_thread_;
   std::deque<KeptPairs> kept_;  // [ranges]: the pairs that a range passed on
   struct RangeWork {

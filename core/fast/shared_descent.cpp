@@ -37,25 +37,25 @@ constexpr std::uint64_t kTestsWorthWaking = 20'000;
 
 }  // namespace
 
-SharedDescent::SharedDescent(const DescentInput& input, const Team& team)
-    : input_(input), team_(team), by_thread_(team.threads(), PatchDescent(input)) {
-  if (team.threads() > 1) kept_.resize(std::max(kStops, kRangesAThread * team.threads()));
+SharedDescent::SharedDescent(const DescentInput& input, const ThreadPool& pool)
+    : input_(input), pool_(pool), by_thread_(pool.threads(), PatchDescent(input)) {
+  if (pool.threads() > 1) kept_.resize(std::max(kStops, kRangesAThread * pool.threads()));
 }
 
 std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink,
                                  std::uint64_t most) {
-  const Team alone;
-  const Team& team = tests_ < kTestsWorthWaking ? alone : team_;
-  team.parallel_for(by_thread_.size(),
+  const ThreadPool alone;
+  const ThreadPool& pool = tests_ < kTestsWorthWaking ? alone : pool_;
+  pool.parallel_for(by_thread_.size(),
                     [&](std::size_t i, std::size_t) { by_thread_[i].start_interval(bounds, grid, most); });
   if (tests_ > kTestsWhereAllAreMet * input_.tree.patches.size()) warm_cache();
   subtrees_.assign(1, {0, 0});
-  const std::size_t ranges = team_.threads() > 1 ? kRangesAThread * team_.threads() : 0;
+  const std::size_t ranges = pool_.threads() > 1 ? kRangesAThread * pool_.threads() : 0;
   if (ranges == 0) {
     by_thread_[0].descend(subtrees_[0], sink);
   } else {
     split_into_subtrees(ranges);
-    team.parallel_for(ranges, [&](std::size_t range, std::size_t thread) {
+    pool.parallel_for(ranges, [&](std::size_t range, std::size_t thread) {
       for (const NodePair pair : subtrees_of(range, ranges)) by_thread_[thread].descend(pair, kept_[range]);
     });
     for (std::size_t range = 0; range < ranges; ++range) pass_on(kept_[range], sink);
@@ -68,10 +68,10 @@ std::uint64_t SharedDescent::run(std::span<const NodeBounds> bounds, const Grid&
 SharedDescent::Outcome SharedDescent::run_in_ranges(
     std::span<const NodeBounds> bounds, const Grid& grid, TrianglePairSink& sink,
     const std::function<std::optional<std::uint64_t>()>& cut_short, std::uint64_t patience) {
-  const Team alone;
-  const Team& team = tests_ < kTestsWorthWaking ? alone : team_;
+  const ThreadPool alone;
+  const ThreadPool& pool = tests_ < kTestsWorthWaking ? alone : pool_;
   const auto start = [&] {
-    team.parallel_for(by_thread_.size(), [&](std::size_t i, std::size_t) {
+    pool.parallel_for(by_thread_.size(), [&](std::size_t i, std::size_t) {
       by_thread_[i].start_interval(bounds, grid, kAnyNumber);
     });
   };
@@ -85,8 +85,8 @@ SharedDescent::Outcome SharedDescent::run_in_ranges(
   PatchDescent::PatchPairs pairs;
   Outcome out;
   for (std::size_t done = 0; done < kStops && !out.stopped && !sink.closed();) {
-    const std::size_t first = done, last = std::min(first + team.threads(), kStops);
-    team.parallel_for(last - first, [&](std::size_t i, std::size_t thread) {
+    const std::size_t first = done, last = std::min(first + pool.threads(), kStops);
+    pool.parallel_for(last - first, [&](std::size_t i, std::size_t thread) {
       const std::size_t range = place_of(first + i);
       PatchDescent& descent = by_thread_[thread];
       const RangeWork before{descent.tests(), descent.patch_pairs()};
@@ -126,7 +126,7 @@ void SharedDescent::warm_cache() const {
   cscd::warm_cache(std::span(input_.tree.adjacent_offset));
   cscd::warm_cache(std::span(input_.tree.adjacent));
   cscd::warm_cache(std::span(input_.tree.common));
-  if (input_.stars != nullptr) input_.stars->warm_cache();
+  if (input_.one_rings != nullptr) input_.one_rings->warm_cache();
 }
 
 // Splits pairs of nodes level by level, until there are enough for all ranges.

@@ -53,7 +53,7 @@ ContactSet answer_of(Detector& detector, const Step& step, Report* report = null
 // drvbc_fast_complete keep all close pairs, and all of them leave most pairs unexamined.
 // Mutations: every pair near on the surface is settled; triangles are tall whatever their heights; one ring
 // instead of two settles; rings are not spread; bounds do not grow; only one side of a pair's bounds grows;
-// clear triangles need no clear ring; planes are asked, or stars as if nothing but touching counted.
+// clear triangles need no clear ring; planes are asked, or one-rings as if nothing but touching counted.
 TEST(Thickness, EveryRowKeepsWhatItPromises) {
   std::size_t clear = 0, near_first = 0;
   std::uint64_t plain = 0, by_signs = 0, by_caps = 0;

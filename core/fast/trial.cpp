@@ -12,7 +12,7 @@
 #include <random>
 
 #include "core/base/random.h"
-#include "core/base/team.h"
+#include "core/base/thread_pool.h"
 #include "core/fast/clusters/surface_clusters.h"
 #include "core/fast/joints_of_parts.h"
 #include "core/fast/prepare/coarse_surface.h"
@@ -123,7 +123,7 @@ class CountingSink : public TrianglePairSink {
 
 // Work is counted in overlap tests of bounding volumes. These constants say how many overlap tests cost about
 // as much as one patch in an interval, one look, and one observer that is placed.
-constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfLook = 3, kTestsOfObserver = 10;
+constexpr std::uint64_t kTestsOfPatch = 9, kTestsOfPass = 3, kTestsOfObserver = 10;
 // The number of trial poses, and the number on a surface of many triangles, where each pose costs more.
 constexpr std::size_t kTrials = 6, kFewTrials = 2;
 // Candidates that look with caps take fewer overlap tests if their clusters are found on a coarser surface of
@@ -154,7 +154,7 @@ std::uint64_t work(FastCuller& culler, std::span<const PosePair> trials, bool by
     culler.refit(step);
     culler.classify(step);
     const CullCounts counts = culler.cull(sink);
-    tests += kTestsOfPatch * culler.patch_count() + kTestsOfLook * culler.looks_per_interval() +
+    tests += kTestsOfPatch * culler.patch_count() + kTestsOfPass * culler.orientation_passes() +
              kTestsOfObserver * counts.radial->clusters + *counts.bvot + kTestsOfPair * sink.count();
   }
   return tests;
@@ -162,9 +162,9 @@ std::uint64_t work(FastCuller& culler, std::span<const PosePair> trials, bool by
 
 TrialCuller made(const StrategyInput& setup, std::vector<std::int32_t> cluster_of,
                  const DrvbcFastOptions& options) {
-  const Team team(setup.threads);
+  const ThreadPool pool(setup.threads);
   auto culler = std::make_unique<FastCuller>(
-      setup, cut_surface(setup.mesh, setup.reference, cluster_of, kLeastCell, team), options);
+      setup, cut_surface(setup.mesh, setup.reference, cluster_of, kLeastCell, pool), options);
   return {std::move(cluster_of), std::move(culler)};
 }
 
@@ -272,7 +272,7 @@ Parts parts_of(const Surfaces& surfaces, StageClock& clock) {
 template <class Work>
 void for_both(int threads, const Work& work) {
   std::array<std::exception_ptr, 2> thrown;
-  Team(threads).parallel_for(thrown.size(), [&](std::size_t i, std::size_t) {
+  ThreadPool(threads).parallel_for(thrown.size(), [&](std::size_t i, std::size_t) {
     try {
       work(i);
     } catch (...) {

@@ -7,7 +7,7 @@
 
 #include "core/elementary/question/test_queries.h"
 #include "core/geometry/bernstein.h"
-#include "core/radial/exact_orientation.h"
+#include "core/radial/test_exact_orientation.h"
 
 namespace cscd::radial {
 namespace {

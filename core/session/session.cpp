@@ -128,7 +128,7 @@ Session::PreparedStrategy& Session::choose(const Motion& motion, const Rig::Inte
 }
 
 bool Session::signs_pay() const {
-  return main_.strategy->looks_by_signs && setup_.mesh.closed_and_oriented();
+  return main_.strategy->drops_by_signs && setup_.mesh.closed_and_oriented();
 }
 
 // A complete strategy that sees starts answers from a start that is not known in less time than it takes to
@@ -170,8 +170,8 @@ void Session::ask(PreparedStrategy& asked, const Motion& motion, const Rig::Inte
   out.strategy = asked.strategy;
   if (start_known_) {
     // Two looks find all contacts of a step from an embedded start, the second one only where something
-    // touches. After a step in which something did, that is likely again, and one look for all is quicker.
-    // For the first contact alone there is one look in either case.
+    // touches. After a step in which something did, that is likely again, and one pass for all is quicker.
+    // For the first contact alone there is one pass in either case.
     const bool clear = !options_.ignore_starts && starts_.clear() && can_follow();
     step.starts_embedded = clear && (!touched_last_ || first_only());
     // Where it is not known whether the start is clear, the first contact says so, and no other does.

@@ -112,7 +112,7 @@ TrueMotion::TrueMotion(const VertexPaths& paths, const StrategyInput& setup, con
                      std::to_string(+loose.first) + "; leave them out");
   detector_ = strategy.make(setup_).detector;
   for (std::size_t v = 0; v < vertices; ++v) everything_.push_back(VertexId{static_cast<std::int32_t>(v)});
-  if (strategy.looks_by_signs && setup.mesh.closed_and_oriented() && setup.exclusions == nullptr)
+  if (strategy.drops_by_signs && setup.mesh.closed_and_oriented() && setup.exclusions == nullptr)
     by_signs_ = kDrvbcFast.make(setup_).detector;
   a_.resize(vertices), b_.resize(vertices), wide_.resize(vertices);
 }

@@ -26,7 +26,7 @@ const char* fault_of(const Transform& map) {
 DualSkin::DualSkin(const Character& character, const Part& part, std::span<const Transform> joints)
     : character_(character), part_(part) {
   for (const Transform& map : joints) {
-    const Parts parts = parts_of(map);
+    const Trs parts = trs_of(map);
     const Quaternion& q = parts.rotation;
     motion_.push_back({rigid_motion(q.w, {q.x, q.y, q.z}, parts.move),
                        {parts.rest[0].x(), parts.rest[1].y(), parts.rest[2].z()},

@@ -31,7 +31,7 @@ Vec3 moved(const Character& character) {
 }
 
 Transform about_x(double degrees, const Vec3& scale = Vec3::Ones(), const Vec3& move = Vec3::Zero()) {
-  return from_parts(move, from_euler({degrees, 0, 0}, {0, 1, 2}), scale);
+  return from_trs(move, from_euler({degrees, 0, 0}, {0, 1, 2}), scale);
 }
 
 // Rotations about one axis by a, b and c blend to the rotation by the angle of the mean of their unit vectors

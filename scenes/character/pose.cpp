@@ -27,7 +27,7 @@ Pose world_of(const Character& character, const std::vector<Transform>& local) {
 
 ScaleTurnMove parts_at_rest(const Node& node) {
   if (node.written) return *node.written;
-  const Parts rest = parts_of(node.local);
+  const Trs rest = trs_of(node.local);
   return {rest.move, rest.rotation, Vec3(rest.rest[0].x(), rest.rest[1].y(), rest.rest[2].z())};
 }
 
@@ -77,7 +77,7 @@ Pose pose_at(const Character& character, const Animation& animation, double seco
     if (!channel.angles.degrees.empty()) rotation = sample(channel.angles, shares, seconds);
     if (!channel.scales.empty()) scale = sample(channel.scales, seconds);
     if (!channel.scale_components.empty()) scale = sample(channel.scale_components, shares, seconds);
-    local[at(channel.node)] = from_parts(move, rotation, scale);
+    local[at(channel.node)] = from_trs(move, rotation, scale);
     scales[channel.node] = scale;
   }
   for (std::size_t n = 0; n < local.size(); ++n) {
@@ -88,7 +88,7 @@ Pose pose_at(const Character& character, const Animation& animation, double seco
     Vec3 scale = driven->second;
     // Below a node that is scaled to nothing, no scale can restore the size; zero keeps the map finite.
     for (int k = 0; k < 3 && follows->inverse; ++k) scale[k] = scale[k] == 0 ? 0 : 1 / scale[k];
-    local[n] = from_parts(Vec3::Zero(), {}, scale);
+    local[n] = from_trs(Vec3::Zero(), {}, scale);
   }
   return world_of(character, local);
 }

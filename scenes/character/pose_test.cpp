@@ -110,7 +110,7 @@ TEST(Pose, ComponentsHaveKeysOfTheirOwnAndElseRest) {
 TEST(Pose, MirroredScalesAreKeptAsWritten) {
   Character tube = bending_tube();
   tube.nodes[4].written = ScaleTurnMove{{1, 0, 0}, {}, {1, -1, -1}};
-  tube.nodes[4].local = from_parts({1, 0, 0}, {}, {1, -1, -1});
+  tube.nodes[4].local = from_trs({1, 0, 0}, {}, {1, -1, -1});
   tube.animations[0].channels = {{4, {{0, Vec3(1, 0, 0)}}, {}, {}}};
   EXPECT_EQ(pose_at(tube, tube.animations[0], 0)[4].column, rest_pose(tube)[4].column);
   const double half = std::sqrt(0.5);
@@ -158,9 +158,9 @@ TEST(Pose, NodesThatFollowAScaleUndoItAtEveryTime) {
   Character tree;
   const ScaleTurnMove twice{Vec3::Zero(), {}, {2, 1, 1}}, half{Vec3::Zero(), {}, {0.5, 1, 1}};
   tree.nodes = {{"root", -1, {}},
-                {"scaled", 0, from_parts(Vec3::Zero(), {}, twice.scale), twice},
-                {"undone", 1, from_parts(Vec3::Zero(), {}, half.scale), half, FollowedScale{1, true}},
-                {"again", 2, from_parts(Vec3::Zero(), {}, twice.scale), twice, FollowedScale{1, false}}};
+                {"scaled", 0, from_trs(Vec3::Zero(), {}, twice.scale), twice},
+                {"undone", 1, from_trs(Vec3::Zero(), {}, half.scale), half, FollowedScale{1, true}},
+                {"again", 2, from_trs(Vec3::Zero(), {}, twice.scale), twice, FollowedScale{1, false}}};
   Animation grow;
   Channel channel;
   channel.node = 1;

@@ -155,7 +155,7 @@ class GltfText {
 
   void add_node(std::size_t n) {
     const Node& node = character_.nodes[n];
-    const Parts parts = parts_of(node.local);
+    const Trs parts = trs_of(node.local);
     std::string children;
     for (std::size_t c = n + 1; c < character_.nodes.size(); ++c)
       if (character_.nodes[c].parent == static_cast<int>(n)) append(children, std::to_string(c));

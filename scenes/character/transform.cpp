@@ -103,7 +103,7 @@ Quaternion from_euler(const Vec3& degrees, const std::array<int, 3>& order) {
   return normalised(q);
 }
 
-Transform from_parts(const Vec3& move, const Quaternion& rotation, const Vec3& scale) {
+Transform from_trs(const Vec3& move, const Quaternion& rotation, const Vec3& scale) {
   Transform map;
   map.column = columns_of(rotation);
   for (int i = 0; i < 3; ++i) map.column[static_cast<std::size_t>(i)] *= scale[i];
@@ -111,7 +111,7 @@ Transform from_parts(const Vec3& move, const Quaternion& rotation, const Vec3& s
   return map;
 }
 
-Parts parts_of(const Transform& map) {
+Trs trs_of(const Transform& map) {
   // Gram-Schmidt orthogonalisation. A column that has no direction of its own gets one at a right angle.
   const auto& c = map.column;
   std::array<Vec3, 3> axis;
@@ -121,7 +121,7 @@ Parts parts_of(const Transform& map) {
   if (!(second.norm() > 1e-12 * c[1].norm())) second = across(axis[0]);
   axis[1] = second / second.norm();
   axis[2] = axis[0].cross(axis[1]);
-  Parts parts{map.origin, quaternion_of(axis), {}};
+  Trs parts{map.origin, quaternion_of(axis), {}};
   // Take `rest` from the columns of the rounded quaternion, so that rotation and rest together give the map
   // however the quaternion was rounded.
   const std::array<Vec3, 3> rotation = columns_of(parts.rotation);
@@ -133,7 +133,7 @@ Parts parts_of(const Transform& map) {
 Transform blend(const Transform& a, const Transform& b, double s) {
   if (s <= 0) return a;
   if (s >= 1) return b;
-  const Parts from = parts_of(a), to = parts_of(b);
+  const Trs from = trs_of(a), to = trs_of(b);
   Transform rotation, rest;
   rotation.column = columns_of(slerp(from.rotation, to.rotation, s));
   for (std::size_t i = 0; i < 3; ++i) rest.column[i] = (1 - s) * from.rest[i] + s * to.rest[i];

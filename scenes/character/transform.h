@@ -46,17 +46,18 @@ Quaternion slerp(const Quaternion& a, const Quaternion& b, double s);
 Quaternion from_euler(const Vec3& degrees, const std::array<int, 3>& order);
 
 // The map that scales, then rotates, then moves.
-Transform from_parts(const Vec3& move, const Quaternion& rotation, const Vec3& scale);
+Transform from_trs(const Vec3& move, const Quaternion& rotation, const Vec3& scale);
 
-// An affine map taken apart: x -> rotation(rest(x)) + move. `rest` is upper triangular: its diagonal holds
-// scales (one of them negative for a map that mirrors), and shears stand above the diagonal.
-struct Parts {
+// An affine map taken apart into translation, rotation and scale: x -> rotation(rest(x)) + move. `rest` is
+// upper triangular: its diagonal holds scales (one of them negative for a map that mirrors), and shears stand
+// above the diagonal.
+struct Trs {
   Vec3 move;
   Quaternion rotation;
   std::array<Vec3, 3> rest;  // columns
 };
-// Takes a map apart; the inverse of from_parts where the map has no shear.
-Parts parts_of(const Transform& map);
+// Takes a map apart; the inverse of from_trs where the map has no shear.
+Trs trs_of(const Transform& map);
 
 // Returns the map at the share s in [0, 1] between two maps. The rotation turns along the shorter way;
 // everything else goes in straight lines. s = 0 gives exactly a, and s = 1 exactly b.

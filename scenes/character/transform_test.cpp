@@ -36,7 +36,7 @@ TEST(Transform, ComposesAndInverts) {
 }
 
 TEST(Transform, OfNoExtentHasNoInverse) {
-  EXPECT_FALSE(inverse(from_parts({1, 2, 3}, {}, {0, 1, 1})).finite());
+  EXPECT_FALSE(inverse(from_trs({1, 2, 3}, {}, {0, 1, 1})).finite());
 }
 
 TEST(Slerp, TurnsAtConstantSpeedTheShorterWay) {
@@ -52,16 +52,16 @@ TEST(Slerp, TurnsAtConstantSpeedTheShorterWay) {
   }
 }
 
-TEST(Parts, GiveTheMapBackMirrorsAndShearsToo) {
+TEST(Trs, GiveTheMapBackMirrorsAndShearsToo) {
   std::mt19937 random(2);
   for (int i = 0; i < 100; ++i) {
     const Transform map = random_map(random);
-    const Parts parts = parts_of(map);
+    const Trs parts = trs_of(map);
     Transform rest;
     rest.column = parts.rest;
-    expect_near(composed(from_parts(parts.move, parts.rotation, {1, 1, 1}), rest), map, 1e-11);
+    expect_near(composed(from_trs(parts.move, parts.rotation, {1, 1, 1}), rest), map, 1e-11);
   }
-  const Parts scaled = parts_of(from_parts({1, 2, 3}, about_z(0.5), {2, 3, 4}));
+  const Trs scaled = trs_of(from_trs({1, 2, 3}, about_z(0.5), {2, 3, 4}));
   EXPECT_NEAR(scaled.rest[0].x(), 2, kNearTransform);
   EXPECT_NEAR(scaled.rest[1].y(), 3, kNearTransform);
   EXPECT_NEAR(scaled.rest[2].z(), 4, kNearTransform);

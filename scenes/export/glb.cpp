@@ -158,7 +158,7 @@ Json skin_of(const Part& part, Buffer& buffer) {
 }
 
 Json node_of(const Node& node) {
-  const Parts parts = parts_of(node.local);
+  const Trs parts = trs_of(node.local);
   ScaleTurnMove local{parts.move, parts.rotation,
                       Vec3(parts.rest[0].x(), parts.rest[1].y(), parts.rest[2].z())};
   if (node.written) {

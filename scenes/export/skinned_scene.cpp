@@ -36,7 +36,7 @@ class Recorder {
  public:
   explicit Recorder(const Scene& scene) : scene_(scene) {
     character_.format = "scene";
-    character_.nodes.push_back({scene.name, -1, from_parts(Vec3::Zero(), turn_to_y(scene.up), Vec3::Ones())});
+    character_.nodes.push_back({scene.name, -1, from_trs(Vec3::Zero(), turn_to_y(scene.up), Vec3::Ones())});
     character_.animations.push_back({scene.name, 0, 0, 0, {}});
   }
 
@@ -95,8 +95,8 @@ class Recorder {
     const Eigen::Matrix3d& turn = state.rotations[bone];
     world_.push_back({{turn.col(0), turn.col(1), turn.col(2)}, state.bones[bone].head});
     const BoneId parent = state.shape.rig.parent[bone];
-    const Parts parts =
-        parts_of(parent == BoneId{-1} ? world_[bone] : composed(inverse(world_[+parent]), world_[bone]));
+    const Trs parts =
+        trs_of(parent == BoneId{-1} ? world_[bone] : composed(inverse(world_[+parent]), world_[bone]));
     for (std::size_t i = 0; i < 3; ++i)
       if (!((parts.rest[i] - Transform().column[i]).norm() < kRigid))
         throw InputError("scene " + character_.animations[0].name + ", frame " + std::to_string(frames_ - 1) +

@@ -14,7 +14,7 @@ namespace {
 // The frames of a scene, turned so that y points up, as it does in glTF.
 Clip upright(const Scene& scene) {
   const Clip clip = generate(scene);
-  const Transform turn = from_parts(Vec3::Zero(), turn_to_y(scene.up), Vec3::Ones());
+  const Transform turn = from_trs(Vec3::Zero(), turn_to_y(scene.up), Vec3::Ones());
   Clip out(clip.header());
   for (std::size_t f = 0; f < clip.frame_count(); ++f) {
     const FrameView frame = clip.frame(f);

@@ -19,14 +19,14 @@ enum class Kind { vertex_face, edge_edge };
 
 struct Family {
   std::string_view name, story;
-  // Makes a query on the lattice. The query has no truth; the referee gives it (in_contact).
+  // Makes a query on the lattice. The query has no truth; the oracle gives it (in_contact).
   Query (*make)(Kind kind, Random& random);
 };
 
 // All families. A new family is a function and a row in families.cpp.
 std::span<const Family> families();
 
-// The referee's answer: true if the features of the query touch at some t in [0, 1].
+// The oracle's answer: true if the features of the query touch at some t in [0, 1].
 bool in_contact(const Query& query, Kind kind);
 
 // A query that is hard at a distance: on the lattice its features come exactly as near as r, along a lattice
@@ -47,7 +47,7 @@ std::span<const CloseFamily> close_families();
 // scale, and r scaled with it. It depends on the arguments alone.
 CloseQuery close_suite_query(const CloseFamily& family, Kind kind, std::size_t number, std::uint64_t seed);
 
-// The referee's answer: true if the features are within r of each other at some t in [0, 1].
+// The oracle's answer: true if the features are within r of each other at some t in [0, 1].
 bool is_close(const CloseQuery& query, Kind kind);
 
 }  // namespace cscd::scenes::hard

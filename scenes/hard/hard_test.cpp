@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/elementary/catalogue.h"
-#include "core/elementary/exact/brute_referee.h"
 #include "core/elementary/exact/closeness.h"
 #include "core/elementary/exact/exact.h"
+#include "core/elementary/exact/test_brute_oracle.h"
 #include "core/geometry/nearest_points.h"
 #include "scenes/hard/disturbance.h"
 #include "scenes/hard/family.h"
@@ -83,8 +83,8 @@ TEST(HardCases, DependOnTheSeedAlone) {
   });
 }
 
-// The brute-force referee gives the truth a second time and shares no algorithm with the referee.
-TEST(HardCases, ASecondRefereeAgreesOnTheLattice) {
+// The brute-force oracle gives the truth a second time and shares no algorithm with the oracle.
+TEST(HardCases, ASecondOracleAgreesOnTheLattice) {
   for_each_case(6, [](const Family& family, Kind kind, std::size_t i) {
     Random random(kSeed + i);
     const Query query = family.make(kind, random);
@@ -110,7 +110,7 @@ TEST(HardCases, ProofsHoldOnTheSuite) {
       if (row.contact_is_proof && !truth) {
         EXPECT_NE(answer.verdict, Verdict::contact) << row.name << "\n" << text(query);
       }
-      // A test that is exact both ways gives the referee's bits as the time. So its time is the same with
+      // A test that is exact both ways gives the oracle's bits as the time. So its time is the same with
       // every compiler and instruction set.
       if (row.apart_is_proof && row.contact_is_proof && truth) {
         EXPECT_EQ(answer.time, truth->lo) << row.name << "\n" << text(query);
@@ -272,7 +272,7 @@ TEST(CloseCases, EveryCaseOfNearestFeaturesComesUp) {
   EXPECT_EQ(edges.size(), 9);
 }
 
-TEST(CloseCases, ASecondRefereeAgreesOnTheLattice) {
+TEST(CloseCases, ASecondOracleAgreesOnTheLattice) {
   for_each_close_case(4, [](const CloseFamily& family, Kind kind, std::size_t i) {
     Random random(kCloseSeed + i);
     const CloseQuery made = family.make(kind, random);

@@ -231,19 +231,19 @@ struct Tally {
   std::array<int, 4> stages{};  // queries that ended in each stage of filtered_exact
 };
 
-// filtered_exact must give the referee's verdict and the same double as its time.
+// filtered_exact must give the oracle's verdict and the same double as its time.
 template <class Query>
 void expect_filtered_exact_agrees(const Query& query, Answer (&test)(const Query&),
-                                  const std::optional<exact::TimeEnclosure>& referee, Tally& tally) {
+                                  const std::optional<exact::TimeEnclosure>& oracle, Tally& tally) {
   const Answer answer = test(query);
   ++tally.stages[static_cast<std::size_t>(filtered_exact_stage(query))];
-  EXPECT_EQ(answer.verdict, referee ? Verdict::contact : Verdict::apart);
-  if (referee) {
-    EXPECT_EQ(answer.time, referee->lo);
+  EXPECT_EQ(answer.verdict, oracle ? Verdict::contact : Verdict::apart);
+  if (oracle) {
+    EXPECT_EQ(answer.time, oracle->lo);
   }
 }
 
-// Compares the referee and `filtered_exact` with the open query set and its published truths (see the
+// Compares the oracle and `filtered_exact` with the open query set and its published truths (see the
 // README of that folder). The set is found through CSCD_QUERIES, or as shared/queries in the current folder
 // or one above. Without the set the test is skipped.
 TEST(QuerySet, EveryPublishedTruthIsMet) {
@@ -289,7 +289,7 @@ TEST(QuerySet, EveryPublishedTruthIsMet) {
               << tally.wrong << " wrong answers, " << tally.wrong_time << " wrong times, " << tally.same_time
               << " times with the published bounds exactly; filtered_exact decided " << tally.stages[0]
               << " by filters, " << tally.stages[1] << " in doubles, " << tally.stages[2] << " in integers, "
-              << tally.stages[3] << " by the referee\n";
+              << tally.stages[3] << " by the oracle\n";
 }
 
 }  // namespace

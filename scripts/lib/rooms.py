@@ -3,7 +3,7 @@ import re
 
 from script import ROOT
 
-HELPER = re.compile(r"_test\.cpp$|test_\w+\.h$|brute_referee\.h$")  # tests of core and what only they include
+HELPER = re.compile(r"_test\.cpp$|test_\w+\.h$")  # tests of core and what only they include
 ROOM = re.compile(r"^\s*cscd_room\((.*?)\)", re.M | re.S)
 
 

@@ -158,7 +158,7 @@ void in_turns(benchmark::State& state, const Queries& queries) {
   state.counters["by_filter"] = stages[ExactStage::filter];
   state.counters["by_doubles"] = stages[ExactStage::doubles];
   state.counters["by_integers"] = stages[ExactStage::integers];
-  state.counters["by_referee"] = stages[ExactStage::referee];
+  state.counters["by_oracle"] = stages[ExactStage::oracle];
 }
 
 // The benchmarks elementary/SCENE/... and, where CSCD_QUERIES names the query set, elementary/queries/....

@@ -21,7 +21,7 @@ namespace cscd::bench {
 enum class Nearness { far, near, contact };
 inline constexpr std::array<const char*, 3> kNearnessNames = {"far", "near", "contact"};
 
-// The referee's truth about a query.
+// The oracle's truth about a query.
 struct Truth {
   std::optional<exact::TimeEnclosure> contact;
   Nearness nearness;

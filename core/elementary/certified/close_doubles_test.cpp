@@ -70,7 +70,7 @@ TEST(Approximate, SlopesAreDerivatives) {
   EXPECT_EQ(f.slope.value, -12);
 }
 
-// Compares answers with the referee's, and counts the stages that gave them.
+// Compares answers with the oracle's, and counts the stages that gave them.
 struct CloseFamily {
   int apart = 0, close = 0;
   std::map<ExactStage, int> stages;
@@ -92,11 +92,11 @@ struct CloseFamily {
     add<MovingVertexFace>(points, r);
     if (!testing::Test::HasFatalFailure()) add<MovingEdgeEdge>(points, r);
   }
-  int by_referee() { return stages[ExactStage::referee]; }
+  int by_oracle() { return stages[ExactStage::oracle]; }
   int all() const { return apart + close; }
 };
 
-TEST(FilteredExactClose, AnswersAsTheRefereeInGeneralPosition) {
+TEST(FilteredExactClose, AnswersAsTheOracleInGeneralPosition) {
   QueryMaker make(1);
   CloseFamily slow, fast, far;
   for (int i = 0; i < 1500; ++i) {
@@ -111,12 +111,12 @@ TEST(FilteredExactClose, AnswersAsTheRefereeInGeneralPosition) {
     EXPECT_GT(family->apart, 150);
     EXPECT_GT(family->close, 150);
     // Doubles settle nearly all.
-    EXPECT_LT(family->by_referee(), 0.002 * family->all());
+    EXPECT_LT(family->by_oracle(), 0.002 * family->all());
   }
 }
 
 // Coordinates on a lattice, r such that many distances are exactly r.
-TEST(FilteredExactClose, AnswersAsTheRefereeOnALattice) {
+TEST(FilteredExactClose, AnswersAsTheOracleOnALattice) {
   QueryMaker make(2);
   CloseFamily family;
   for (int i = 0; i < 4000; ++i)
@@ -125,7 +125,7 @@ TEST(FilteredExactClose, AnswersAsTheRefereeOnALattice) {
   EXPECT_GT(family.close, 1000);
   // Integers settle what doubles leave open, but for some that graze the distance.
   EXPECT_GT(family.stages[ExactStage::integers], 500);
-  EXPECT_LT(family.by_referee(), 0.01 * family.all());
+  EXPECT_LT(family.by_oracle(), 0.01 * family.all());
 }
 
 // Edges that stay parallel, and vertices that come straight down on an edge of a face's border: several pairs
@@ -150,13 +150,13 @@ TEST(FilteredExactClose, DoublesSettleFeaturesThatStayParallel) {
                                      r));
   }
   EXPECT_GT(parallel.close, 150);
-  EXPECT_LT(parallel.by_referee(), 0.05 * parallel.all());
+  EXPECT_LT(parallel.by_oracle(), 0.05 * parallel.all());
   EXPECT_GT(border.close, 150);
-  EXPECT_LT(border.by_referee(), 0.05 * border.all());
+  EXPECT_LT(border.by_oracle(), 0.05 * border.all());
 }
 
 // Features that graze each other's distance, come close at t = 0 or t = 1, or stay at the distance.
-TEST(FilteredExactClose, AnswersAsTheRefereeWhereDistancesAreNearlyR) {
+TEST(FilteredExactClose, AnswersAsTheOracleWhereDistancesAreNearlyR) {
   QueryMaker make(4);
   CloseFamily family;
   for (int i = 0; i < 2000; ++i) {
@@ -181,7 +181,7 @@ TEST(FilteredExactClose, AnswersAsTheRefereeWhereDistancesAreNearlyR) {
   EXPECT_GT(family.close, 1000);
 }
 
-TEST(FilteredExactClose, AnswersAsTheRefereeAtAnySize) {
+TEST(FilteredExactClose, AnswersAsTheOracleAtAnySize) {
   QueryMaker make(5);
   for (const double size : {0x1p-1060, 0x1p-500, 0x1p-120, 0x1p-60, 0x1p60, 0x1p200, 0x1p1000}) {
     CloseFamily family;
@@ -199,7 +199,7 @@ TEST(FilteredExactClose, AnswersAsTheRefereeAtAnySize) {
   }
   EXPECT_GT(tiny.close, 40);
   EXPECT_EQ(huge.close, huge.all());
-  EXPECT_EQ(huge.by_referee(), 0);
+  EXPECT_EQ(huge.by_oracle(), 0);
 }
 
 }  // namespace

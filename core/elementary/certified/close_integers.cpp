@@ -171,7 +171,7 @@ bool at_distance_at_end(const Scene& scene, int likely) {
 }
 
 // The times from index / 2^halvings to (index + 1) / 2^halvings.
-struct Cell {
+struct DyadicInterval {
   std::int64_t index = 0;
   int halvings = 0;
 
@@ -219,7 +219,7 @@ bool fits(const TimePolynomial& p, int places) {
   return p.bits() + p.degree * places + 32 <= Number::kBits;
 }
 
-Control control_on(const TimePolynomial& p, const Cell& cell) {
+Control control_on(const TimePolynomial& p, const DyadicInterval& cell) {
   constexpr std::int64_t kFactorial[] = {1, 1, 2, 6, 24, 120, 720};
   const int n = p.degree;
   Control result;
@@ -280,7 +280,7 @@ double guess_root(const Control& control) {
 }
 
 // The largest double not above the only root of p within the cell, where `control` has one variation.
-Result time_within(const TimePolynomial& p, const Cell& cell, const Control& control) {
+Result time_within(const TimePolynomial& p, const DyadicInterval& cell, const Control& control) {
   double low = cell.low(), high = cell.high();
   const int below = control.first_sign();
   const auto gap = [&] { return to_rank(high) - to_rank(low); };
@@ -311,7 +311,7 @@ Result time_within(const TimePolynomial& p, const Cell& cell, const Control& con
 Result first_of_case(const CloseCase<TimePolynomial>& which, double until) {
   const TimePolynomial& f = which.beyond;
   if (f.is_zero() || (which.insides > 0 && which.whole.is_zero())) return {Outcome::apart};
-  Cell cell;
+  DyadicInterval cell;
   while (cell.low() < until) {
     const Control at = control_on(f, cell);
     const int roots = at.variations();

@@ -19,7 +19,7 @@ using test::QueryMaker;
 
 constexpr unsigned kAllCases = (1 << 9) - 1;
 
-// Holds the decision, and the stage of integers by itself, against the referee.
+// Holds the decision, and the stage of integers by itself, against the oracle.
 struct Ties {
   int apart = 0, at_start = 0, later = 0, all = 0;
   int integers_gave_up = 0;
@@ -63,7 +63,7 @@ struct Ties {
     add<MovingVertexFace>(points, r);
     if (!testing::Test::HasFatalFailure()) add<MovingEdgeEdge>(points, r);
   }
-  int by_referee() { return stages[ExactStage::referee]; }
+  int by_oracle() { return stages[ExactStage::oracle]; }
 };
 
 // Two features of a grid with edges of length `edge`, whose points are multiples of it, some edges apart.
@@ -83,7 +83,7 @@ double hair_off(QueryMaker& make, double x) {
   return kind == 0 ? x : std::nextafter(x, kind == 1 ? 0 : 2 * x);
 }
 
-TEST(CloseIntegers, GridsAtAWholeNumberOfEdgesAreDecidedAsByTheReferee) {
+TEST(CloseIntegers, GridsAtAWholeNumberOfEdgesAreDecidedAsByTheOracle) {
   QueryMaker make(11);
   Ties at_rest, carried, turned;
   for (int i = 0; i < 2400; ++i) {
@@ -104,14 +104,14 @@ TEST(CloseIntegers, GridsAtAWholeNumberOfEdgesAreDecidedAsByTheReferee) {
     EXPECT_GT(ties->at_start, ties->all / 10);
     EXPECT_GT(ties->apart, ties->all / 10);
     EXPECT_GT(ties->stages[ExactStage::integers], ties->all / 20);
-    EXPECT_LT(ties->by_referee(), ties->all / 200);
+    EXPECT_LT(ties->by_oracle(), ties->all / 200);
   }
-  EXPECT_EQ(at_rest.by_referee(), 0);
+  EXPECT_EQ(at_rest.by_oracle(), 0);
   EXPECT_GT(turned.later, 100);
 }
 
 // Features that come down to the distance, or rise from it, at t = 0, within, or at t = 1.
-TEST(CloseIntegers, TiesAtBothEndsAndWithinAreDecidedAsByTheReferee) {
+TEST(CloseIntegers, TiesAtBothEndsAndWithinAreDecidedAsByTheOracle) {
   QueryMaker make(12);
   Ties ties;
   for (int i = 0; i < 3000; ++i) {
@@ -134,10 +134,10 @@ TEST(CloseIntegers, TiesAtBothEndsAndWithinAreDecidedAsByTheReferee) {
   EXPECT_GT(ties.apart, 300);
   EXPECT_GT(ties.at_start, 300);
   EXPECT_GT(ties.later, 300);
-  EXPECT_LT(ties.by_referee(), 60);
+  EXPECT_LT(ties.by_oracle(), 60);
 }
 
-TEST(CloseIntegers, DegenerateFeaturesAndGeneralOnesAreDecidedAsByTheReferee) {
+TEST(CloseIntegers, DegenerateFeaturesAndGeneralOnesAreDecidedAsByTheOracle) {
   QueryMaker make(13);
   Ties lattice, general;
   for (int i = 0; i < 2000; ++i) {
@@ -145,15 +145,15 @@ TEST(CloseIntegers, DegenerateFeaturesAndGeneralOnesAreDecidedAsByTheReferee) {
   }
   for (int i = 0; i < 500; ++i) ASSERT_NO_FATAL_FAILURE(general.add_both(make.any(), make.uniform(0.1, 1)));
   EXPECT_GT(lattice.later, 200);
-  EXPECT_LT(lattice.by_referee(), 100);
+  EXPECT_LT(lattice.by_oracle(), 100);
   EXPECT_GT(general.later, 100);
   // Nothing but a distance that is grazed is too much for the integers.
   EXPECT_LT(lattice.integers_gave_up, 400);
   EXPECT_EQ(general.integers_gave_up, 0);
 }
 
-// Coordinates of very different sizes need longer integers than there are, and then the referee answers.
-TEST(CloseIntegers, ExtremeExponentsAreDecidedAsByTheReferee) {
+// Coordinates of very different sizes need longer integers than there are, and then the oracle answers.
+TEST(CloseIntegers, ExtremeExponentsAreDecidedAsByTheOracle) {
   QueryMaker make(14);
   Ties ties, mixed;
   for (const double size : {0x1p-1070, 0x1p-600, 0x1p-90, 0x1p90, 0x1p500, 0x1p1000})

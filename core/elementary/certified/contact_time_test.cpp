@@ -62,7 +62,7 @@ struct Count {
 };
 
 // The pairs find the largest double not above the root for nearly all contacts.
-TEST(TimeInPairs, IsTheReferees) {
+TEST(TimeInPairs, IsTheOracles) {
   QueryMaker make(5);
   Count vf, ee;
   for (int i = 0; i < 4000; ++i) {

@@ -117,13 +117,13 @@ inline Roots count_roots(const Cubic& f, double low, double high) {
 
 // A part of [0, 1] that holds roots: exactly one, with certain opposite signs at both ends, or an unknown
 // number.
-struct Part {
+struct RootInterval {
   double low, high;
   bool one_root;
 };
-struct Parts {
+struct RootIntervals {
   static constexpr int kMost = 8;
-  Part at[kMost];
+  RootInterval at[kMost];
   int count = 0;
   void add(double low, double high, Roots roots) {
     if (roots != Roots::none) at[count++] = {low, high, roots == Roots::one};
@@ -134,15 +134,15 @@ struct Parts {
 // [0, 1]. The interval is cut near the critical points of the cubic and near ends that may be roots. If the
 // sign of the cubic at a critical point is uncertain, a narrow part round that point is cut out. The parts
 // are right for any choice of cuts.
-inline Parts parts_with_roots(const Cubic& f) {
+inline RootIntervals root_intervals(const Cubic& f) {
   const double(&c)[4] = f.f.c;
-  Parts parts;
+  RootIntervals parts;
   const Roots whole = count_roots(f, c);
   if (whole != Roots::unclear) {
     parts.add(0, 1, whole);
     return parts;
   }
-  double cut[Parts::kMost + 1] = {0};
+  double cut[RootIntervals::kMost + 1] = {0};
   int cuts = 1;
   const auto add_cut = [&](double t) {
     if (t > cut[cuts - 1] && t < 1) cut[cuts++] = t;
@@ -172,7 +172,7 @@ inline Parts parts_with_roots(const Cubic& f) {
 }
 
 // Narrows a part with one root until the cubic at its ends is about as small as the error bound.
-inline void narrow(const Cubic& f, Part& part) {
+inline void narrow(const Cubic& f, RootInterval& part) {
   const double at_low = f.at(part.low), at_high = f.at(part.high);
   const bool falls = at_low > 0;
   double t = part.low + (part.high - part.low) * (at_low / (at_low - at_high));
@@ -212,9 +212,9 @@ DoublesResult decide_in_doubles(const Triple& v, const BernsteinCubic& cubic) {
   for (int k = 0; k < 3; ++k)
     if (place_along<Query, Bounds>(v, size, k).outside) return {DoublesResult::apart};
   const Cubic f(cubic, Bounds::cubic);
-  Parts parts = parts_with_roots(f);
+  RootIntervals parts = root_intervals(f);
   for (int i = 0; i < parts.count; ++i) {
-    Part& part = parts.at[i];
+    RootInterval& part = parts.at[i];
     if (part.one_root) narrow(f, part);
     const Place<double> place = place_between<Query, Bounds>(v, size, part.low, part.high);
     if (place.outside) continue;

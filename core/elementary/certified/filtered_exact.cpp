@@ -6,7 +6,7 @@
 //   doubles   uses certain signs in double precision (doubles_stage.h), and pairs of doubles for the time
 //             of a contact (contact_time.h);
 //   integers  uses exact integers of fixed capacity (integer_contact.h, and at a distance close_integers.h);
-//   referee   answers queries that the integer stage gives up on (exact.h).
+//   oracle   answers queries that the integer stage gives up on (exact.h).
 // Only the last stage allocates.
 #include "core/elementary/certified/filtered_exact.h"
 
@@ -34,15 +34,15 @@ struct Decision {
 constexpr Answer kApart{Verdict::apart, 0};
 
 template <class Query>
-Decision by_referee(const Query& query) {
+Decision by_oracle(const Query& query) {
   const auto time = exact::first_contact(query);
-  return {time ? Answer{Verdict::contact, time->lo} : kApart, ExactStage::referee};
+  return {time ? Answer{Verdict::contact, time->lo} : kApart, ExactStage::oracle};
 }
 
 template <class Query>
 Decision by_integers(const Query& query) {
   const integer::Result result = integer::first_contact(query);
-  if (result.outcome == integer::Outcome::gave_up) return by_referee(query);
+  if (result.outcome == integer::Outcome::gave_up) return by_oracle(query);
   const bool touch = result.outcome == integer::Outcome::contact;
   return {touch ? Answer{Verdict::contact, result.time} : kApart, ExactStage::integers};
 }
@@ -50,7 +50,7 @@ Decision by_integers(const Query& query) {
 template <class Query>
 Decision time_by_integers(const Query& query, const DoublesResult& contact) {
   const integer::Result result = integer::contact_time(query, contact.low, contact.high);
-  if (result.outcome == integer::Outcome::gave_up) return by_referee(query);
+  if (result.outcome == integer::Outcome::gave_up) return by_oracle(query);
   return {{Verdict::contact, result.time}, ExactStage::integers};
 }
 
@@ -178,9 +178,9 @@ bool rests(const Query& query) {
 }
 
 template <class Query>
-Decision close_by_referee(const Query& query, double r) {
+Decision close_by_oracle(const Query& query, double r) {
   const auto time = exact::first_closeness(query, r);
-  return {time ? Answer{Verdict::contact, time->lo} : kApart, ExactStage::referee};
+  return {time ? Answer{Verdict::contact, time->lo} : kApart, ExactStage::oracle};
 }
 bool is_decided(const CloseResult& found) {
   return found.kind == CloseResult::apart || found.kind == CloseResult::close;
@@ -196,7 +196,7 @@ Decision close_by_integers(const Query& query, double r, const CloseResult& foun
   CloseResult later = found;
   if (found.time == 0) {
     const integer::Outcome start = integer::closeness_at_start(query, r, found.likely_case);
-    if (start == integer::Outcome::gave_up) return close_by_referee(query, r);
+    if (start == integer::Outcome::gave_up) return close_by_oracle(query, r);
     if (start == integer::Outcome::contact) return {{Verdict::contact, 0}, ExactStage::integers};
     if (rests(query)) return {kApart, ExactStage::integers};
     if (found.kind == CloseResult::unclear_start) later = close_in_doubles(query, r, true);
@@ -206,7 +206,7 @@ Decision close_by_integers(const Query& query, double r, const CloseResult& foun
   if (end.from_afar && integer::at_distance_at_end(query, r, end.likely_case))
     return {{Verdict::contact, 1}, ExactStage::integers};
   const integer::Result result = integer::first_closeness(query, r, possible_cases(query, r, later.time));
-  if (result.outcome == integer::Outcome::gave_up) return close_by_referee(query, r);
+  if (result.outcome == integer::Outcome::gave_up) return close_by_oracle(query, r);
   const bool close = result.outcome == integer::Outcome::contact;
   return {close ? Answer{Verdict::contact, result.time} : kApart, ExactStage::integers};
 }

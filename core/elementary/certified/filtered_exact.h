@@ -7,7 +7,7 @@
 namespace cscd {
 
 // Decides contact exactly, for any finite coordinates. The time of a contact is the largest double that is
-// not above the earliest time: it is never late, early by less than 2^-53, and the same as the referee's.
+// not above the earliest time: it is never late, early by less than 2^-53, and the same as the oracle's.
 Answer filtered_exact_vertex_face(const MovingVertexFace& query);
 Answer filtered_exact_edge_edge(const MovingEdgeEdge& query);
 
@@ -23,7 +23,7 @@ void filtered_exact_close(std::span<const MovingEdgeEdge> queries, std::span<con
                           std::span<Answer> answers);
 
 // The last stage that was needed for the answer and its time.
-enum class ExactStage { filter, doubles, integers, referee };
+enum class ExactStage { filter, doubles, integers, oracle };
 ExactStage filtered_exact_stage(const MovingVertexFace& query);
 ExactStage filtered_exact_stage(const MovingEdgeEdge& query);
 ExactStage filtered_exact_close_stage(const MovingVertexFace& query, double r);

@@ -7,8 +7,8 @@
 
 #include "core/elementary/certified/doubles_stage.h"
 #include "core/elementary/certified/exact_lanes.h"
-#include "core/elementary/exact/brute_referee.h"
 #include "core/elementary/exact/exact.h"
+#include "core/elementary/exact/test_brute_oracle.h"
 #include "core/elementary/question/test_queries.h"
 
 namespace cscd {
@@ -30,7 +30,7 @@ bool same(const Answer& a, const Answer& b) {
   return a.verdict == b.verdict && (a.verdict == Verdict::apart || a.time == b.time);
 }
 
-// A family of queries. `add` compares the answer with the referee's and counts the stage that gave the
+// A family of queries. `add` compares the answer with the oracle's and counts the stage that gave the
 // answer.
 struct Family {
   int queries = 0, contacts = 0;
@@ -89,7 +89,7 @@ class FilteredExact : public testing::Test {
   Family vf_, ee_;
 };
 
-TEST_F(FilteredExact, AgreesWithTheRefereeOnQueriesOfNoParticularKind) {
+TEST_F(FilteredExact, AgreesWithTheOracleOnQueriesOfNoParticularKind) {
   compare(10'000, [&](int) { return make_.any(); });
   expect_both_answers();
   // None of these queries needs exact arithmetic.
@@ -97,18 +97,18 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnQueriesOfNoParticularKind) {
     EXPECT_EQ(family->stages.at(ExactStage::filter) + family->stages.at(ExactStage::doubles), 10'000);
 }
 
-TEST_F(FilteredExact, AgreesWithTheRefereeOnLattices) {
+TEST_F(FilteredExact, AgreesWithTheOracleOnLattices) {
   for (const int n : {1, 2, 3, 4, 9}) compare(2000, [&](int) { return make_.lattice(n); });
   expect_both_answers();
   for (const Family* family : {&vf_, &ee_}) {
     EXPECT_GT(family->stages.at(ExactStage::integers), 1000);
-    EXPECT_FALSE(family->stages.contains(ExactStage::referee));
+    EXPECT_FALSE(family->stages.contains(ExactStage::oracle));
   }
 }
 
 // The coordinates are thirds and tenths of a lattice, some of them far from the origin, so their last
 // places hold rounded bits.
-TEST_F(FilteredExact, AgreesWithTheRefereeOnRoundedLattices) {
+TEST_F(FilteredExact, AgreesWithTheOracleOnRoundedLattices) {
   compare(8000, [&](int i) {
     const Vec3 shift = i % 3 == 0 ? Vec3(1e6, -3e5, 0.1) : Vec3::Zero();
     return test::moved(test::scaled(make_.lattice(1 + i % 4), i % 2 ? 0.1 : 1.0 / 3), shift, shift);
@@ -117,7 +117,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnRoundedLattices) {
 }
 
 // The features touch exactly on a lattice. Then one coordinate is moved by one ulp or a few.
-TEST_F(FilteredExact, AgreesWithTheRefereeAnUlpFromTouching) {
+TEST_F(FilteredExact, AgreesWithTheOracleAnUlpFromTouching) {
   const auto move = [&](FourMovingPoints& p) {
     MovingPoint& x = p[static_cast<std::size_t>(make_.below(4))];
     double& c = (make_.below(2) ? x.start : x.end)[make_.below(3)];
@@ -148,7 +148,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeAnUlpFromTouching) {
 
 // Coordinates of a lattice are moved by single doubles, which takes zeros to the smallest doubles. The bits
 // of such coordinates lie a thousand places apart.
-TEST_F(FilteredExact, AgreesWithTheRefereeTheSmallestOfDoublesFromALattice) {
+TEST_F(FilteredExact, AgreesWithTheOracleTheSmallestOfDoublesFromALattice) {
   compare(1500, [&](int i) {
     FourMovingPoints p = make_.lattice(1 + i % 3);
     for (MovingPoint& x : p)
@@ -161,12 +161,12 @@ TEST_F(FilteredExact, AgreesWithTheRefereeTheSmallestOfDoublesFromALattice) {
   expect_both_answers();
   for (Family* family : {&vf_, &ee_}) {
     EXPECT_GT(family->stages.at(ExactStage::integers), 300);
-    EXPECT_LT(family->stages[ExactStage::referee], family->queries / 100);
+    EXPECT_LT(family->stages[ExactStage::oracle], family->queries / 100);
   }
 }
 
 // The features touch at borders, corners and ends, up to the rounding of the coordinates.
-TEST_F(FilteredExact, AgreesWithTheRefereeAtBorders) {
+TEST_F(FilteredExact, AgreesWithTheOracleAtBorders) {
   const double places[] = {0, 0.5, 1, 1e-16, 1 - 1e-16, 1e-9, -1e-16};
   const auto place = [&] { return places[make_.below(7)]; };
   const double times[] = {0, 1, 0.5, 1.0 / 3, 1e-17, 1 - 1e-16};
@@ -180,7 +180,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeAtBorders) {
 }
 
 // The cubics have double and triple roots, exactly or nearly.
-TEST_F(FilteredExact, AgreesWithTheRefereeOnFlatCubics) {
+TEST_F(FilteredExact, AgreesWithTheOracleOnFlatCubics) {
   compare(4000, [&](int i) {
     FourMovingPoints p = i % 2 ? make_.any() : make_.lattice(4);
     const double thin = std::ldexp(1.0, -20 - i % 60);
@@ -194,7 +194,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnFlatCubics) {
 }
 
 // The coordinates span the range of doubles. Neither underflow nor overflow may decide a query.
-TEST_F(FilteredExact, AgreesWithTheRefereeAtExtremesOfRange) {
+TEST_F(FilteredExact, AgreesWithTheOracleAtExtremesOfRange) {
   for (const double scale : {0x1p-1070, 1e-320, 1e-300, 0x1p-700, 1e-110, 1e110, 1e150, 1e300, 0x1p1019}) {
     vf_ = ee_ = {};
     compare(600, [&](int i) {
@@ -202,10 +202,10 @@ TEST_F(FilteredExact, AgreesWithTheRefereeAtExtremesOfRange) {
     });
     SCOPED_TRACE(scale);
     expect_both_answers();
-    for (const Family* family : {&vf_, &ee_}) EXPECT_FALSE(family->stages.contains(ExactStage::referee));
+    for (const Family* family : {&vf_, &ee_}) EXPECT_FALSE(family->stages.contains(ExactStage::oracle));
   }
 }
-TEST_F(FilteredExact, AgreesWithTheRefereeOnMixedScales) {
+TEST_F(FilteredExact, AgreesWithTheOracleOnMixedScales) {
   const double scales[] = {1e-300, 1e-150, 1e-20, 1, 1e20, 1e150, 1e300};
   compare(600, [&](int i) {
     FourMovingPoints p = make_.lattice(2);
@@ -222,7 +222,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnMixedScales) {
 
 // Some vectors are subnormal beside others that are not. The digits that such a vector loses between the
 // ends of an interval must count as an error.
-TEST_F(FilteredExact, AgreesWithTheRefereeOnSubnormalVectors) {
+TEST_F(FilteredExact, AgreesWithTheOracleOnSubnormalVectors) {
   const FourMovingPoints lost = {
       MovingPoint{{0x1p-1074, 0x1p-1073, 0x1p-1073}, {0x1p-1072, 3 * 0x1p-1074, -3 * 0x1p-1074}},
       MovingPoint{Vec3::Zero(), Vec3::Zero()}, MovingPoint{{1e50, 1e50, 0}, {1e50, 1e50, 0}},
@@ -242,7 +242,7 @@ TEST_F(FilteredExact, AgreesWithTheRefereeOnSubnormalVectors) {
   expect_both_answers();
 }
 
-// The brute-force referee shares no algorithm with filtered_exact or the referee.
+// The brute-force oracle shares no algorithm with filtered_exact or the oracle.
 TEST_F(FilteredExact, AgreesWithBruteForceOnSmallIntegers) {
   const auto check = [](const FourMovingPoints& p, const Answer& answer, const brute::Predicate& predicate) {
     const auto expected = brute::first_contact(brute::moving(p), predicate);
@@ -294,14 +294,14 @@ TEST_F(FilteredExact, KeepsItsAnswerUnderSymmetries) {
 
 // A vertex passes the tilted plane z = x by the smallest double, and the triangle is huge. This takes more
 // bits than the integers hold.
-TEST_F(FilteredExact, LeavesTheRestToTheReferee) {
+TEST_F(FilteredExact, LeavesTheRestToTheOracle) {
   constexpr double tiny = 0x1p-1074, far = 0x1p900;
   const MovingPoint a = test::still(-far, -far, -far), b = test::still(far, -far, far),
                     c = test::still(0, far, 0);
   const MovingVertexFace crosses{{{tiny, 0, 2 * tiny}, {tiny, 0, 0}}, {a, b, c}},
       stays{{{tiny, 0, 3 * tiny}, {tiny, 0, 2 * tiny}}, {a, b, c}};
   for (const MovingVertexFace& query : {crosses, stays})
-    EXPECT_EQ(filtered_exact_stage(query), ExactStage::referee);
+    EXPECT_EQ(filtered_exact_stage(query), ExactStage::oracle);
   EXPECT_EQ(ask(crosses).verdict, Verdict::contact);
   EXPECT_EQ(ask(crosses).time, 0.5);
   EXPECT_EQ(ask(stays).verdict, Verdict::apart);

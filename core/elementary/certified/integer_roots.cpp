@@ -10,7 +10,7 @@
 // Floating-point guesses decide how soon an answer comes, never what the answer is: every sign is computed in
 // integers.
 //
-// The referee (algebraic.h) shares no code with this file, so that each can be tested against the other.
+// The oracle (algebraic.h) shares no code with this file, so that each can be tested against the other.
 #include "core/elementary/certified/integer_roots.h"
 
 #include <algorithm>

@@ -9,10 +9,10 @@
 namespace cscd::integer {
 namespace {
 
-// A polynomial in the types of this solver and of the referee's solver.
+// A polynomial in the types of this solver and of the oracle's solver.
 struct Both {
   Polynomial ours;
-  exact::Polynomial referee;
+  exact::Polynomial oracle;
 };
 
 Both both(const std::vector<std::int64_t>& c) {
@@ -23,7 +23,7 @@ Both both(const std::vector<std::int64_t>& c) {
     terms[i] = static_cast<long>(c[i]);
   }
   p.ours.trim();
-  p.referee = exact::Polynomial(terms[0], terms[1], terms[2], terms[3]);
+  p.oracle = exact::Polynomial(terms[0], terms[1], terms[2], terms[3]);
   return p;
 }
 
@@ -66,13 +66,13 @@ class Polynomials {
   std::mt19937_64 random_;
 };
 
-TEST(IntegerRoots, AgreeWithTheReferees) {
+TEST(IntegerRoots, AgreeWithTheOracles) {
   Polynomials polynomials(5);
   int roots_seen = 0, zero_signs = 0, repeated = 0, gave_up = 0;
   for (int i = 0; i < 60'000; ++i) {
     const Both p = both(polynomials.any()), q = both(polynomials.any(2));
     if (p.ours.is_zero()) continue;
-    auto expected = exact::roots_in_unit_interval(p.referee);
+    auto expected = exact::roots_in_unit_interval(p.oracle);
     RootSolver solver;
     Root roots[3];
     const int count = solver.find_roots(p.ours, roots);
@@ -84,7 +84,7 @@ TEST(IntegerRoots, AgreeWithTheReferees) {
       auto& root = expected[static_cast<std::size_t>(k)];
       if (i % 2) solver.tighten(roots[k]);  // signs must not depend on whether the root is tight
       const int sign = solver.sign_at(q.ours, roots[k]);
-      ASSERT_EQ(sign, root.sign_of(q.referee)) << i << ", root " << k;
+      ASSERT_EQ(sign, root.sign_of(q.oracle)) << i << ", root " << k;
       zero_signs += sign == 0 && !q.ours.is_zero();
       solver.tighten(roots[k]);
       ASSERT_FALSE(solver.gave_up());
@@ -141,7 +141,7 @@ TEST(IntegerRoots, TellsPairsApartFarBelowTheSpacingOfDoubles) {
     c[0] += off;
     for (int i = 0; i < 4; ++i) p.ours.c[i] = wide(c[i]);
     p.ours.trim();
-    p.referee = exact::Polynomial(c[0], c[1], c[2], c[3]);
+    p.oracle = exact::Polynomial(c[0], c[1], c[2], c[3]);
     return p;
   };
   int pairs = 0;
@@ -149,7 +149,7 @@ TEST(IntegerRoots, TellsPairsApartFarBelowTheSpacingOfDoubles) {
     for (const int degree : {2, 3})
       for (const int off : {-2, -1, 1}) {
         const Both p = near_third(degree, places, off);
-        auto expected = exact::roots_in_unit_interval(p.referee);
+        auto expected = exact::roots_in_unit_interval(p.oracle);
         RootSolver solver;
         Root roots[3];
         ASSERT_EQ(solver.find_roots(p.ours, roots), static_cast<int>(expected.size()));
@@ -161,7 +161,7 @@ TEST(IntegerRoots, TellsPairsApartFarBelowTheSpacingOfDoubles) {
             for (const int q_degree : {1, 2})
               for (const int q_off : {-3, -1, 0, 1}) {
                 const Both q = near_third(q_degree, q_places, q_off);
-                EXPECT_EQ(solver.sign_at(q.ours, roots[k]), expected[k].sign_of(q.referee))
+                EXPECT_EQ(solver.sign_at(q.ours, roots[k]), expected[k].sign_of(q.oracle))
                     << places << " " << degree << " " << off << ", root " << k << ": " << q_places << " "
                     << q_degree << " " << q_off;
               }

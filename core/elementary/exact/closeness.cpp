@@ -1,4 +1,4 @@
-// The exact referee at a distance.
+// The exact oracle at a distance.
 //
 // Scaled by a power of two, coordinates are integer polynomials in t and r is an integer. For each case of
 // least features (closeness_cases.h) the squared distance of the point, lines or planes that they span, minus

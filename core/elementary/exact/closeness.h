@@ -7,7 +7,7 @@
 
 namespace cscd::exact {
 
-// The referee at a distance r > 0: decides whether the distance of the closed features is at most r at some t
+// The oracle at a distance r > 0: decides whether the distance of the closed features is at most r at some t
 // in [0, 1], for the coordinates and r exactly as they stand, any finite doubles. Returns an enclosure of the
 // earliest such t, or nullopt if there is none. Nothing is rounded. The method is in closeness.cpp.
 std::optional<TimeEnclosure> first_closeness(const MovingVertexFace& query, double r);

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/elementary/exact/brute_referee.h"
 #include "core/elementary/exact/exact.h"
+#include "core/elementary/exact/test_brute_oracle.h"
 #include "core/elementary/question/test_queries.h"
 
 namespace cscd::exact {

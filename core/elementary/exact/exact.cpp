@@ -1,4 +1,4 @@
-// The exact referee.
+// The exact oracle.
 //
 // Doubles are rational numbers: scaled by a power of two, the coordinates of the moving points are integer
 // polynomials in t. Features in contact are coplanar, so a contact can only be at a root of the coplanarity

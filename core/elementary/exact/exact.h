@@ -7,7 +7,7 @@
 
 namespace cscd::exact {
 
-// The referee: the elementary test whose answer is final (the method is in exact.cpp). It takes the
+// The oracle: the elementary test whose answer is final (the method is in exact.cpp). It takes the
 // coordinates exactly as they stand, any finite doubles, and decides whether the closed features touch at
 // some t in [0, 1]. It returns an enclosure of the earliest such t, or nullopt if there is none. Nothing is
 // rounded. A query takes tens of microseconds.

@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "core/elementary/exact/brute_referee.h"
+#include "core/elementary/exact/test_brute_oracle.h"
 #include "core/elementary/question/test_queries.h"
 
 namespace cscd {
@@ -223,7 +223,7 @@ TEST(ExactEdgeEdge, ZeroLength) {
       first_contact(against_edge(moving({1, 1, 1}, {1, -1, -1}), moving({1, -1, 1}, {1, 1, -1}))), 0.5);
 }
 
-TEST(ExactReferee, ExtremeCoordinates) {
+TEST(ExactOracle, ExtremeCoordinates) {
   for (const double scale : {0x1p-1060, 0x1p-997, 0x1p-300, 0x1p498, 0x1p1020}) {
     const auto p = [&](double x, double y, double z0, double z1) {
       return moving(scale * Vec3(x, y, z0), scale * Vec3(x, y, z1));
@@ -244,7 +244,7 @@ TEST(ExactReferee, ExtremeCoordinates) {
                         mpq_class(tiny) / (mpq_class(tiny) + mpq_class(huge)));
 }
 
-TEST(ExactReferee, FarFromTheOrigin) {
+TEST(ExactOracle, FarFromTheOrigin) {
   const Vec3 far(0x1p50, -0x1p49, 0x1p51);
   const auto p = [&](double x, double y, double z0, double z1) {
     return moving(far + Vec3(x, y, z0), far + Vec3(x, y, z1));
@@ -285,7 +285,7 @@ void compare_with_brute_force(const FourMovingPoints& query, const Result& resul
   const auto events = predicate.events(points);
   const auto expected = brute::first_contact(points, predicate);
   ASSERT_EQ(result.has_value(), expected.has_value());
-  // A contact before the reported time would contradict both referees, even where they agree.
+  // A contact before the reported time would contradict both oracles, even where they agree.
   for (int i = 0; i <= 16; ++i) {
     const mpq_class t(i, 16);
     if (!result || t < mpq_class(result->lo)) {
@@ -299,7 +299,7 @@ void compare_with_brute_force(const FourMovingPoints& query, const Result& resul
   EXPECT_GE(expected->upper, mpq_class(result->lo));
 }
 
-TEST(ExactReferee, AgreesWithBruteForceOnSmallIntegers) {
+TEST(ExactOracle, AgreesWithBruteForceOnSmallIntegers) {
   constexpr unsigned seed = 20240611;
   constexpr int cases = 400;
   Lattice lattice{std::mt19937_64(seed)};
@@ -332,7 +332,7 @@ void expect_same(const Result& a, const Result& b) {
   EXPECT_EQ(a->hi, b->hi);
 }
 
-TEST(ExactReferee, KeepsItsAnswerUnderSymmetries) {
+TEST(ExactOracle, KeepsItsAnswerUnderSymmetries) {
   constexpr unsigned seed = 7;
   Lattice lattice{std::mt19937_64(seed)};
   for (int i = 0; i < 4000; ++i) {
@@ -375,7 +375,7 @@ TEST(ExactReferee, KeepsItsAnswerUnderSymmetries) {
   }
 }
 
-TEST(ExactReferee, IrrationalTimes) {
+TEST(ExactOracle, IrrationalTimes) {
   // The triangle's plane is z = t x. The vertex at x = t, z = 1/2 meets the plane at the square root of 1/2.
   const MovingVertexFace query{moving({0, 0, 0.5}, {1, 0, 0.5}),
                                {still(0, -1, 0), moving({1, 0, 0}, {1, 0, 1}), still(0, 1, 0)}};

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/elementary/exact/algebraic.h"
-#include "core/elementary/exact/brute_referee.h"
+#include "core/elementary/exact/test_brute_oracle.h"
 
 namespace cscd::exact {
 namespace {

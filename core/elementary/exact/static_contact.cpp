@@ -3,7 +3,7 @@
 // The predicates are a cascade, cheapest step first: comparisons of coordinates, which are exact; then
 // determinants in floating point, whose sign counts only beyond a forward error bound; then exact integers.
 // Every "apart" of the first two steps is a proof. The cases that these steps cannot prove, in practice
-// touching features and exact degeneracies, are decided by the referee's predicates. A call takes 5 to 30
+// touching features and exact degeneracies, are decided by the oracle's predicates. A call takes 5 to 30
 // ns, and microseconds if the exact step is needed.
 //
 // The error bounds, with u = kUnitRoundoff: A coordinate difference has a relative error of at most u, and

@@ -9,8 +9,8 @@
 #include <sstream>
 #include <string>
 
-#include "core/elementary/exact/brute_referee.h"
 #include "core/elementary/exact/exact.h"
+#include "core/elementary/exact/test_brute_oracle.h"
 #include "core/elementary/question/test_queries.h"
 #include "core/mesh/adjacency.h"
 
@@ -20,11 +20,11 @@ namespace {
 
 using test::still;
 
-// The referee, asked about features at rest. It decides without any floating-point filter.
-bool referee_vertex_triangle(const Vec3& v, const Vec3& a, const Vec3& b, const Vec3& c) {
+// The oracle, asked about features at rest. It decides without any floating-point filter.
+bool oracle_vertex_triangle(const Vec3& v, const Vec3& a, const Vec3& b, const Vec3& c) {
   return exact::first_contact(MovingVertexFace{still(v), {still(a), still(b), still(c)}}).has_value();
 }
-bool referee_segments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+bool oracle_segments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return exact::first_contact(MovingEdgeEdge{{still(a), still(b)}, {still(c), still(d)}}).has_value();
 }
 
@@ -204,12 +204,12 @@ TEST(StaticContact, IsNeverMisledByRounding) {
                  describe({a, b, c, on_triangle, on_ab, far}));
     for (const Vec3& v : {on_triangle, on_ab}) {
       const bool vertex = vertex_touches_triangle(v, a, b, c);
-      ASSERT_EQ(vertex, referee_vertex_triangle(v, a, b, c));
+      ASSERT_EQ(vertex, oracle_vertex_triangle(v, a, b, c));
       touching[0] += vertex;
     }
     for (const Vec3& end : {on_ab, opposite}) {
       const bool segments = segments_touch(a, b, far, end);
-      ASSERT_EQ(segments, referee_segments(a, b, far, end));
+      ASSERT_EQ(segments, oracle_segments(a, b, far, end));
       touching[1] += segments;
     }
     if (i % 4 == 0)

@@ -17,7 +17,7 @@ using test::still;
 struct Dropped {
   int by_coplanarity = 0, sideways = 0;
 };
-// Asks the referee about every query that the filter drops: both parts of the filter have to be proofs.
+// Asks the oracle about every query that the filter drops: both parts of the filter have to be proofs.
 template <class Query, class Make>
 Dropped expect_proofs(int queries, const Make& make_points) {
   Dropped dropped;
@@ -34,7 +34,7 @@ Dropped expect_proofs(int queries, const Make& make_points) {
 
 // Mutation: test one end of the interval alone; leave out the extent of the features; take the second edge
 // for the first.
-TEST(Filter, DropsOnlyWhatTheRefereeCallsApart) {
+TEST(Filter, DropsOnlyWhatTheOracleCallsApart) {
   QueryMaker make(1);
   const auto expect_many = [](const Dropped& dropped) {
     EXPECT_GT(dropped.by_coplanarity, 50);

@@ -58,7 +58,7 @@ TEST(RelativeBox, IsTightAtRest) {
   EXPECT_TRUE(relative_boxes_apart(beyond, a));
 }
 
-// At a distance, boxes have to be farther apart than that by more than roundings. The referee finds close
+// At a distance, boxes have to be farther apart than that by more than roundings. The oracle finds close
 // what is exactly as far apart.
 TEST(RelativeBox, AtADistanceLeavesRoomForRoundings) {
   const MovingEdgeEdge query{{test::still(0, 0, 0), test::still(1, 0, 0)},
@@ -96,7 +96,7 @@ TEST(RelativeBox, SeparatesNeighboursThatMoveTogether) {
   }
 }
 
-// The referee confirms that features whose boxes are apart do not touch.
+// The oracle confirms that features whose boxes are apart do not touch.
 template <class Query>
 void expect_sound(double scale, double common_scale, unsigned seed) {
   QueryMaker make(seed);
@@ -119,7 +119,7 @@ void expect_sound(double scale, double common_scale, unsigned seed) {
   EXPECT_GT(apart, 0);
 }
 
-TEST(RelativeBox, SeparatesOnlyWhatTheRefereeCallsApart) {
+TEST(RelativeBox, SeparatesOnlyWhatTheOracleCallsApart) {
   for (const auto& [scale, common] :
        {std::pair{1.0, 0.0}, {1.0, 1e6}, {1e6, 1e6}, {1e-3, 1e6}, {1e-9, 1e7}}) {
     expect_sound<MovingVertexFace>(scale, common, 3);

@@ -30,10 +30,10 @@ Certificates::Certificates(const TriangleMesh& mesh, const PatchTree& tree, cons
       capped_(std::move(capped)),
       may_cross_ray_(capped_.empty() ? 0 : tree.patches.size()),
       rings_(mesh, tree) {
-  // The first cover holds every triangle; `look` relies on that.
+  // The first cover holds every triangle; `classify` relies on that.
   assert(std::ranges::find(covers_[0].cluster_of, kNone) == covers_[0].cluster_of.end());
   for (const Patch& patch : tree_.patches)
-    cell_.push_back({patch.cluster, tree_.inside[cell_.size()], patch.lanes});
+    patch_.push_back({patch.cluster, tree_.inside[patch_.size()], patch.lanes});
   use_covers(kCovers);
   use_contour_test(!capped_.empty());
 }
@@ -59,7 +59,7 @@ void Certificates::use_covers(std::size_t count) {
 // Forgets everything that was certified.
 void Certificates::forget() {
   std::fill(certified_.begin(), certified_.end(), std::array<Signs, kCovers>{});
-  std::fill_n(state_.begin(), cell_.size(), State::spoiled);
+  std::fill_n(state_.begin(), patch_.size(), State::spoiled);
 }
 
 void Certificates::resize_first_cover() {
@@ -72,7 +72,7 @@ void Certificates::resize_first_cover() {
 
 void Certificates::relabel(std::size_t first, std::size_t last) {
   for (std::size_t p = first; p < last; ++p) {
-    cell_[p].cluster[0] = tree_.patches[p].cluster[0];
+    patch_[p].cluster[0] = tree_.patches[p].cluster[0];
     state_[p] = State::spoiled;
   }
   rings_.forget_clusters();
@@ -86,31 +86,31 @@ void Certificates::set_cluster(std::size_t cluster, CapBuilder& builder, const T
                            covers_[0].observers[cluster]);
 }
 
-std::size_t Certificates::looks_per_interval() const {
+std::size_t Certificates::orientation_passes() const {
   std::size_t looks = 0;
-  for (const Cell& cell : cell_)
+  for (const PatchRecord& cell : patch_)
     for (std::size_t c = 0; c < covers_used_; ++c) looks += cell.cluster[c] != kNone;
   return looks;
 }
 
-void Certificates::start(const LocalPositions& positions, const Team& team, float thickness) {
+void Certificates::start(const LocalPositions& positions, const ThreadPool& pool, float thickness) {
   positions_ = &positions;
   thickness_ = thickness;
   if (thickness_ > 0) rings_.start(covers_used_);
   place_viewpoints(positions.records());
   for (std::size_t c = 0; keeps_all_ && c < covers_used_; ++c)
-    capped_[c].start(positions, viewpoint_[c], team);
+    capped_[c].start(positions, viewpoint_[c], pool);
 }
 
-void Certificates::finish(const Team& team) {
+void Certificates::finish(const ThreadPool& pool) {
   if (keeps_all_)
-    certify_clear(team);
+    certify_clear(pool);
   else
     certify_all_round();
-  if (thickness_ > 0 && keeps_all_) keep_clear_stars();
+  if (thickness_ > 0 && keeps_all_) keep_clear_one_rings();
   if (thickness_ > 0 && !keeps_all_) rings_.find_unsettled();
   if (!positions_->known()) forget();
-  label_nodes(team);
+  label_nodes(pool);
 }
 
 void Certificates::place_viewpoints(std::span<const LocalPositions::Record> records) {
@@ -122,14 +122,14 @@ void Certificates::place_viewpoints(std::span<const LocalPositions::Record> reco
     }
 }
 
-void Certificates::look(std::size_t p, const PatchLanes& lanes) {
+void Certificates::classify(std::size_t p, const PatchLanes& lanes) {
   const Patch& patch = tree_.patches[p];
   const Viewpoint* from[kCovers] = {};
   for (std::size_t c = 0; c < covers_used_; ++c)
     if (patch.cluster[c] != kNone) from[c] = &viewpoint_[c][static_cast<std::size_t>(patch.cluster[c])];
   Signs seen[kCovers];
   if (thickness_ > 0)
-    look_at_distance(p, lanes, from, seen);
+    classify_at_distance(p, lanes, from, seen);
   else
     orientations(lanes, patch, from, positions_->error(), seen);
   if (keeps_all_) {
@@ -152,13 +152,13 @@ void Certificates::look(std::size_t p, const PatchLanes& lanes) {
   // around it that is not positive.
   certified_[p][0] = {static_cast<Mask16>(patch.lanes & seen[0].positive),
                       single_triangle_signs_[p][0].negative};
-  for (std::size_t c = 1; c < covers_used_; ++c) certified_[p][c] = {cell_[p].inside[c], 0};
+  for (std::size_t c = 1; c < covers_used_; ++c) certified_[p][c] = {patch_[p].inside[c], 0};
 }
 
 // By signs, planes have to be farther away than half of the thickness. Caps go by signs alone, and by the
 // heights of what is clear.
-void Certificates::look_at_distance(std::size_t p, const PatchLanes& lanes,
-                                    const Viewpoint* const (&from)[kCovers], Signs (&seen)[kCovers]) {
+void Certificates::classify_at_distance(std::size_t p, const PatchLanes& lanes,
+                                        const Viewpoint* const (&from)[kCovers], Signs (&seen)[kCovers]) {
   DistantSigns distant;
   orientations_at_distance(lanes, tree_.patches[p], from, positions_->error(),
                            keeps_all_ ? 0 : thickness_ / 2, thickness_, distant);
@@ -169,16 +169,16 @@ void Certificates::look_at_distance(std::size_t p, const PatchLanes& lanes,
 }
 
 // With a thickness, a triangle is certified only if all triangles round its corners are clear and tall.
-void Certificates::keep_clear_stars() {
-  for (std::size_t p = 0; p < cell_.size(); ++p)
+void Certificates::keep_clear_one_rings() {
+  for (std::size_t p = 0; p < patch_.size(); ++p)
     for (std::size_t c = 0; c < covers_used_; ++c)
       rings_.spoil(p, c,
-                   static_cast<Mask16>(cell_[p].lanes & ~static_cast<unsigned>(certified_[p][c].positive)));
-  rings_.find_stars();
-  for (std::size_t p = 0; p < cell_.size(); ++p)
+                   static_cast<Mask16>(patch_[p].lanes & ~static_cast<unsigned>(certified_[p][c].positive)));
+  rings_.find_one_rings();
+  for (std::size_t p = 0; p < patch_.size(); ++p)
     for (std::size_t c = 0; c < covers_used_; ++c) {
-      if (cell_[p].cluster[c] == kNone) continue;
-      const Mask16 kept = certified_[p][c].positive & rings_.stars(p, c);
+      if (patch_[p].cluster[c] == kNone) continue;
+      const Mask16 kept = certified_[p][c].positive & rings_.one_rings(p, c);
       if (kept == certified_[p][c].positive) continue;
       certified_[p][c].positive = kept;
       if (state_[p] != State::seen) state_[p] = State::spoiled;
@@ -190,22 +190,22 @@ void Certificates::make_usual(std::size_t p) {
   state_[p] = State::unlabelled;
   single_triangle_signs_[p] = {};
   certified_[p] = {};
-  certified_[p][0].positive = cell_[p].lanes;
+  certified_[p][0].positive = patch_[p].lanes;
   for (std::size_t c = 1; c < covers_used_; ++c)
-    certified_[p][c].positive = !keeps_all_                    ? cell_[p].inside[c]
-                                : cell_[p].cluster[c] != kNone ? cell_[p].lanes
-                                                               : Mask16{0};
+    certified_[p][c].positive = !keeps_all_                     ? patch_[p].inside[c]
+                                : patch_[p].cluster[c] != kNone ? patch_[p].lanes
+                                                                : Mask16{0};
 }
 
 void Certificates::certify_all_round() {
   for_each_unusual([&](std::size_t p) {
-    if (state_[p] == State::seen) look_round(p);
+    if (state_[p] == State::seen) certify_by_rings(p);
   });
 }
 
 // A cover other than the first certifies a triangle only if every triangle round its corners is positive too,
 // or every one is negative. This recomputes the certificates of one patch that is not all positive by itself.
-void Certificates::look_round(std::size_t p) {
+void Certificates::certify_by_rings(std::size_t p) {
   const Patch& patch = tree_.patches[p];
   Mask16 corners[kCovers] = {}, not_negative[kCovers] = {};  // places of vertices in the patch
   unsigned any = 0;
@@ -220,7 +220,7 @@ void Certificates::look_round(std::size_t p) {
     }
   });
   for (std::size_t c = 1; c < covers_used_; ++c)
-    for_each_lane(single_triangle_signs_[p][c].negative & cell_[p].inside[c], [&](std::size_t lane) {
+    for_each_lane(single_triangle_signs_[p][c].negative & patch_[p].inside[c], [&](std::size_t lane) {
       if ((patch.corners_of(1U << lane) & not_negative[c]) == 0)
         certified_[p][c].negative |= static_cast<Mask16>(1U << lane);
     });
@@ -229,48 +229,48 @@ void Certificates::look_round(std::size_t p) {
 // Returns the triangles of a patch that are positive by themselves in one cover.
 Mask16 Certificates::positive(std::size_t p, std::size_t c) const {
   return state_[p] == State::seen
-             ? static_cast<Mask16>(cell_[p].lanes &
+             ? static_cast<Mask16>(patch_[p].lanes &
                                    ~static_cast<unsigned>(single_triangle_signs_[p][c].not_positive))
-             : cell_[p].lanes;
+             : patch_[p].lanes;
 }
 
-void Certificates::certify_clear(const Team& team) {
-  team.parallel_for(covers_used_, [&](std::size_t cover, std::size_t) { take_all(cover); });
-  team.ranges(cell_.size(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
+void Certificates::certify_clear(const ThreadPool& pool) {
+  pool.parallel_for(covers_used_, [&](std::size_t cover, std::size_t) { take_all(cover); });
+  pool.ranges(patch_.size(), kRange, [&](std::size_t first, std::size_t last, std::size_t) {
     for (std::size_t p = first; p < last; ++p) certify_clear(p);
   });
 }
 
 // Tells the capped clusters of a cover which triangles are not positive, and which their rays may cross.
 void Certificates::take_all(std::size_t c) {
-  for (std::size_t p = 0; p < cell_.size(); ++p)
-    if ((state_[p] == State::seen || may_cross_ray_[p] != 0) && cell_[p].cluster[c] != kNone &&
-        (positive(p, c) != cell_[p].lanes || (may_cross_ray_[p] >> c & 1) != 0))
+  for (std::size_t p = 0; p < patch_.size(); ++p)
+    if ((state_[p] == State::seen || may_cross_ray_[p] != 0) && patch_[p].cluster[c] != kNone &&
+        (positive(p, c) != patch_[p].lanes || (may_cross_ray_[p] >> c & 1) != 0))
       capped_[c].take(tree_.patches[p], positive(p, c));
   while (capped_[c].choose_other_rays())
-    for (std::size_t p = 0; p < cell_.size(); ++p)
-      if (cell_[p].cluster[c] != kNone &&
-          capped_[c].has_other_ray(static_cast<std::size_t>(cell_[p].cluster[c])))
+    for (std::size_t p = 0; p < patch_.size(); ++p)
+      if (patch_[p].cluster[c] != kNone &&
+          capped_[c].has_other_ray(static_cast<std::size_t>(patch_[p].cluster[c])))
         capped_[c].count(tree_.patches[p], positive(p, c));
 }
 
 void Certificates::certify_clear(std::size_t p) {
-  const auto cluster = [&](std::size_t c) { return static_cast<std::size_t>(cell_[p].cluster[c]); };
+  const auto cluster = [&](std::size_t c) { return static_cast<std::size_t>(patch_[p].cluster[c]); };
   bool all_clear = state_[p] != State::seen;
   for (std::size_t c = 0; c < covers_used_; ++c)
-    all_clear &= cell_[p].cluster[c] == kNone || capped_[c].all_clear(cluster(c));
+    all_clear &= patch_[p].cluster[c] == kNone || capped_[c].all_clear(cluster(c));
   if (all_clear) return;
   for (std::size_t c = 0; c < covers_used_; ++c)
-    if (cell_[p].cluster[c] != kNone)
+    if (patch_[p].cluster[c] != kNone)
       certified_[p][c] = {capped_[c].clear(tree_.patches[p], positive(p, c)), 0};
   if (state_[p] != State::seen) state_[p] = State::spoiled;
 }
 
-void Certificates::label_nodes(const Team& team) {
+void Certificates::label_nodes(const ThreadPool& pool) {
   counts_.positive = covers_[0].cluster_of.size();
   counts_.negative = counts_.uncertain = 0;
   for_each_unusual([&](std::size_t p) {
-    const Cell& patch = cell_[p];
+    const PatchRecord& patch = patch_[p];
     unsigned some = 0;
     Label label = Label{} + kNone;
     for (std::size_t c = 0; c < kCovers; ++c) {
@@ -289,7 +289,7 @@ void Certificates::label_nodes(const Team& team) {
   });
   // Recompute the labels of all inner nodes, although few have changed: the descent reads most of them soon,
   // and this pass brings them into the cache.
-  tree_.for_each_inner_upwards(team, [&](std::size_t n, const PatchTree::Node& node) {
+  tree_.for_each_inner_upwards(pool, [&](std::size_t n, const PatchTree::Node& node) {
     const Label left = label_[node.left()], right = label_[node.right()];
     label_[n] = (left ^ right) >> one_is_enough_ == 0 ? left | right : Label{} + kNone;
   });

@@ -36,9 +36,9 @@ class Certificates {
   void use_contour_test(bool all);
   // Looks from the first `count` covers alone, at least one, from the next interval on.
   void use_covers(std::size_t count);
-  // The number of looks in an interval. A look is the orientation of one patch's triangles towards the
-  // observer of one cover.
-  std::size_t looks_per_interval() const;
+  // The number of orientation passes in an interval. A pass is the orientation of one patch's triangles
+  // towards the observer of one cover.
+  std::size_t orientation_passes() const;
 
   // The next four are called between two intervals, after whoever owns the first cover and the tree has
   // changed them (adaptive_cover.h).
@@ -58,12 +58,12 @@ class Certificates {
     if (!capped_.empty()) capped_[0].rename_last(cluster);
   }
 
-  // An interval is one call of `start`, then one call of `look` for every patch, in any order and from any
-  // thread, then one call of `finish`.
-  // With a thickness above 0, in local units, what is certified stays farther apart than that.
-  void start(const LocalPositions& positions, const Team& team = Team(), float thickness = 0);
-  void look(std::size_t patch, const PatchLanes& lanes);
-  void finish(const Team& team = Team());
+  // An interval is one call of `start`, then one call of `classify` for every patch, in any order and from
+  // any thread, then one call of `finish`. With a thickness above 0, in local units, what is certified stays
+  // farther apart than that.
+  void start(const LocalPositions& positions, const ThreadPool& pool = ThreadPool(), float thickness = 0);
+  void classify(std::size_t patch, const PatchLanes& lanes);
+  void finish(const ThreadPool& pool = ThreadPool());
 
   // With a thickness, signs say nothing of pairs that are near on the surface (tall_rings.h). Calls
   // take(triangle, triangle) for those among them that nothing else settles.
@@ -97,13 +97,13 @@ class Certificates {
     Shared swapped(Mask16 lanes_p) const { return {q, p, lanes_p}; }
   };
   Shared shared(std::size_t p, std::size_t q) const {
-    Shared sets{{}, {}, cell_[q].lanes};
+    Shared sets{{}, {}, patch_[q].lanes};
     for (std::size_t c = 0; c < kCovers; ++c)
-      if (cell_[p].cluster[c] == cell_[q].cluster[c] && cell_[p].cluster[c] != kNone && keeps_all_) {
+      if (patch_[p].cluster[c] == patch_[q].cluster[c] && patch_[p].cluster[c] != kNone && keeps_all_) {
         // One clear triangle of the two is enough.
-        sets.p[2 * c] = certified_[p][c].positive, sets.q[2 * c] = cell_[q].lanes;
-        sets.p[2 * c + 1] = cell_[p].lanes, sets.q[2 * c + 1] = certified_[q][c].positive;
-      } else if (cell_[p].cluster[c] == cell_[q].cluster[c]) {
+        sets.p[2 * c] = certified_[p][c].positive, sets.q[2 * c] = patch_[q].lanes;
+        sets.p[2 * c + 1] = patch_[p].lanes, sets.q[2 * c + 1] = certified_[q][c].positive;
+      } else if (patch_[p].cluster[c] == patch_[q].cluster[c]) {
         const Signs &a = certified_[p][c], &b = certified_[q][c];
         sets.p[2 * c] = a.positive, sets.p[2 * c + 1] = a.negative;
         sets.q[2 * c] = b.positive, sets.q[2 * c + 1] = b.negative;
@@ -120,7 +120,7 @@ class Certificates {
       unsigned negative = certified_[p][0].negative;
       for (std::size_t c = 1; c < kCovers; ++c)
         negative &= ~static_cast<unsigned>(certified_[p][c].positive | certified_[p][c].negative);
-      if (const unsigned rest = cell_[p].lanes & ~some; (rest | negative) != 0)
+      if (const unsigned rest = patch_[p].lanes & ~some; (rest | negative) != 0)
         take(p, static_cast<Mask16>(rest), static_cast<Mask16>(negative));
     });
   }
@@ -142,15 +142,15 @@ class Certificates {
   void forget();
   void make_usual(std::size_t patch);
   void certify_all_round();
-  void look_round(std::size_t patch);
+  void certify_by_rings(std::size_t patch);
   Mask16 positive(std::size_t patch, std::size_t cover) const;
-  void certify_clear(const Team& team);
+  void certify_clear(const ThreadPool& pool);
   void take_all(std::size_t cover);
   void certify_clear(std::size_t patch);
-  void label_nodes(const Team& team);
-  void look_at_distance(std::size_t patch, const PatchLanes& lanes, const Viewpoint* const (&from)[kCovers],
-                        Signs (&seen)[kCovers]);
-  void keep_clear_stars();
+  void label_nodes(const ThreadPool& pool);
+  void classify_at_distance(std::size_t patch, const PatchLanes& lanes,
+                            const Viewpoint* const (&from)[kCovers], Signs (&seen)[kCovers]);
+  void keep_clear_one_rings();
 
   // What is known of a patch. Most patches are usual, all positive in every cover, from one interval to the
   // next, and what is certified of them stays as it is.
@@ -172,7 +172,7 @@ class Certificates {
     }
   }
 
-  struct Cell {  // [patches]: what is needed of every patch, side by side in memory
+  struct PatchRecord {  // [patches]: what is needed of every patch, side by side in memory
     std::array<std::int32_t, kCovers> cluster;
     std::array<Mask16, kCovers> inside;
     Mask16 lanes;
@@ -186,7 +186,7 @@ class Certificates {
   const Covers& covers_;
   std::size_t covers_used_ = 0;
   const LocalPositions* positions_ = nullptr;
-  std::vector<Cell> cell_;
+  std::vector<PatchRecord> patch_;
   std::array<std::vector<Viewpoint>, kCovers> viewpoint_;
   std::vector<std::array<Signs, kCovers>> certified_;                            // of each patch
   std::vector<std::array<SingleTriangleSigns, kCovers>> single_triangle_signs_;  // of each patch

@@ -46,9 +46,9 @@ constexpr Case kCases[] = {{false, CertifiedBody::Bones::chain},
                            {false, CertifiedBody::Bones::sixths},
                            {true, CertifiedBody::Bones::sixths}};
 
-// Mutations: look_round takes the certificate from the triangle that is not positive instead of from all
-// round it; needed() compares signs of different clusters, or drops pairs whose triangles are certified by
-// different covers; look_round ignores neighbours when it certifies negatives.
+// Mutations: certify_by_rings takes the certificate from the triangle that is not positive instead of from
+// all round it; needed() compares signs of different clusters, or drops pairs whose triangles are certified
+// by different covers; certify_by_rings ignores neighbours when it certifies negatives.
 TEST(Certificates, APairIsDroppedOnlyByOneField) {
   for (const auto& [inside_out, bones] : kCases)
     for (int seed = 1; seed <= 2; ++seed) {
@@ -129,15 +129,15 @@ TEST(Certificates, ANodeIsSkippedOnlyWhereAllPairsBelowAre) {
   EXPECT_GT(skipped_inner, 10u);
 }
 
-// Mutations: certificates of covers that are no longer used stay; looks_per_interval counts all covers.
+// Mutations: certificates of covers that are no longer used stay; orientation_passes counts all covers.
 TEST(Certificates, CoversThatAreNotUsedDropNothing) {
   CertifiedBody scene(0.04, 3, 1, false, CertifiedBody::Bones::sixths);
-  const std::size_t looks = scene.certificates.looks_per_interval();
+  const std::size_t looks = scene.certificates.orientation_passes();
   EXPECT_EQ(
       scene.certificates.counts().clusters,
       scene.covers[0].observers.size() + scene.covers[1].observers.size() + scene.covers[2].observers.size());
   scene.certificates.use_covers(1);
-  EXPECT_EQ(scene.certificates.looks_per_interval(), scene.tree.patches.size());
+  EXPECT_EQ(scene.certificates.orientation_passes(), scene.tree.patches.size());
   EXPECT_GT(looks, scene.tree.patches.size() * 3 / 2);
   EXPECT_EQ(scene.certificates.counts().clusters, scene.covers[0].observers.size());
   scene.certify();
@@ -192,7 +192,7 @@ TEST(Certificates, CapsDropAPairOfAClusterWhereOneTriangleIsClear) {
        {std::pair(0.5, CertifiedBody::Bones::chain), {3.0, CertifiedBody::Bones::sixths}}) {
     CertifiedBody scene(0.02, bend, 1, false, bones);
     Certificates certificates = scene.with_caps();
-    look_at_all(certificates, scene.tree, scene.local);
+    classify_all(certificates, scene.tree, scene.local);
     const std::vector<std::vector<Mask16>> clear = clear_triangles(scene);
     std::size_t dropped_by_one_cover = 0, wrong = 0;
     for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
@@ -256,7 +256,7 @@ TEST(Certificates, LabelsNameTheClusterThatAPatchHasNow) {
   Certificates certificates(mesh, cut.tree, cut.covers);
   LocalPositions local(sphere.positions);
   local.update(Motion(sphere.positions, sphere.positions));
-  const auto certify = [&] { look_at_all(certificates, cut.tree, local); };
+  const auto certify = [&] { classify_all(certificates, cut.tree, local); };
   const std::size_t first = static_cast<std::size_t>(cut.tree.leaf.front()),
                     last = static_cast<std::size_t>(cut.tree.leaf.back());
   certify();
@@ -304,7 +304,7 @@ class FreshBesideUsed {
   std::vector<std::uint64_t> positive;
 
  private:
-  void look(Certificates& certificates, const std::vector<bool>& mirrored) {
+  void classify(Certificates& certificates, const std::vector<bool>& mirrored) {
     const std::span<const LocalPositions::Record> records = scene_.local.records();
     float sum = 0;
     for (const LocalPositions::Record& r : records) sum += r.at[1];
@@ -314,7 +314,7 @@ class FreshBesideUsed {
       PatchLanes lanes = load(records, scene_.tree.patches[p].vertex);
       if (!mirrored.empty() && mirrored[p])
         for (Float16(&end)[3] : lanes.at) end[1] = twice_middle - end[1];
-      certificates.look(p, lanes);
+      certificates.classify(p, lanes);
     }
     certificates.finish();
   }
@@ -357,7 +357,7 @@ TEST(Certificates, SayBySignsAndByCapsWhatFreshOnesSay) {
   CertifiedBody scene(0, 0, 1);
   const auto look = [&](Certificates& certificates, bool all) {
     certificates.use_contour_test(all);
-    look_at_all(certificates, scene.tree, scene.local);
+    classify_all(certificates, scene.tree, scene.local);
   };
   Certificates used = scene.with_caps();
   std::size_t different = 0;

@@ -104,7 +104,7 @@ void TallRings::spread_ring() {
   spread_over_.insert(spread_over_.end(), front_.begin(), front_.end());
 }
 
-void TallRings::find_stars() {
+void TallRings::find_one_rings() {
   begin_spread();
   spread_ring();
 }

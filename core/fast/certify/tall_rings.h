@@ -25,18 +25,18 @@ class TallRings {
   TallRings(const TriangleMesh& mesh, const PatchTree& tree) : mesh_(mesh), tree_(tree) {}
 
   // An interval is one call of `start`, one call of `take` for every patch and cover, from any thread, and
-  // one call of find_stars() or of find_unsettled(). The first `covers` are in use.
+  // one call of find_one_rings() or of find_unsettled(). The first `covers` are in use.
   void start(std::size_t covers);
   // Takes the tall triangles of a patch, none where it is in no cluster.
   void take(std::size_t patch, std::size_t cover, Mask16 tall) {
     spoiled_[patch][cover] = static_cast<Mask16>(tree_.patches[patch].lanes & ~static_cast<unsigned>(tall));
   }
 
-  // Takes out triangles that are not clear of others (contour/capped_clusters.h), before find_stars().
+  // Takes out triangles that are not clear of others (contour/capped_clusters.h), before find_one_rings().
   void spoil(std::size_t patch, std::size_t cover, Mask16 triangles) { spoiled_[patch][cover] |= triangles; }
-  void find_stars();
+  void find_one_rings();
   // The triangles of a patch whose first ring is tall and clear.
-  Mask16 stars(std::size_t patch, std::size_t cover) const {
+  Mask16 one_rings(std::size_t patch, std::size_t cover) const {
     return static_cast<Mask16>(inner_[0][patch][cover] & ~static_cast<unsigned>(spoiled_[patch][cover]));
   }
 

@@ -130,7 +130,7 @@ TEST(TallRings, LieInsideTheClustersThatThereAreNow) {
 }
 
 // Mutations: rings are not spread; what is spoiled later is left in.
-TEST(TallRings, AStarIsWhatIsTallAndNotSpoiledAllRound) {
+TEST(TallRings, AOneRingIsWhatIsTallAndNotSpoiledAllRound) {
   TallTube tube(5, 0.01);
   std::mt19937 random(6);
   for (std::size_t p = 0; p < tube.cut.tree.patches.size(); p += 7) {
@@ -138,17 +138,18 @@ TEST(TallRings, AStarIsWhatIsTallAndNotSpoiledAllRound) {
     tube.rings.spoil(p, 0, static_cast<Mask16>(1U << lane));
     tube.tall[static_cast<std::size_t>(+tube.cut.tree.triangles[p][lane])][0] = false;
   }
-  tube.rings.find_stars();
-  std::size_t stars = 0, others = 0;
+  tube.rings.find_one_rings();
+  std::size_t one_rings = 0, others = 0;
   for (std::size_t p = 0; p < tube.cut.tree.patches.size(); ++p)
     for (std::size_t c = 0; c < kCovers; ++c)
       for_each_lane(tube.cut.tree.patches[p].lanes, [&](std::size_t lane) {
         const Triangle& corner = tube.mesh.corners(tube.cut.tree.triangles[p][lane]);
-        const bool star = tube.tall_in_one_cluster(tube.round({corner.begin(), corner.end()}), c);
-        EXPECT_EQ((tube.rings.stars(p, c) >> lane & 1) != 0, star) << "patch " << p << ", cover " << c;
-        ++(star ? stars : others);
+        const bool one_ring = tube.tall_in_one_cluster(tube.round({corner.begin(), corner.end()}), c);
+        EXPECT_EQ((tube.rings.one_rings(p, c) >> lane & 1) != 0, one_ring)
+            << "patch " << p << ", cover " << c;
+        ++(one_ring ? one_rings : others);
       });
-  EXPECT_GT(stars, 500u);
+  EXPECT_GT(one_rings, 500u);
   EXPECT_GT(others, 500u);
 }
 

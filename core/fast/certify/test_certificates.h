@@ -14,11 +14,11 @@
 
 namespace cscd::fast {
 
-// Lets the certificates look at all patches of one interval.
-inline void look_at_all(Certificates& certificates, const PatchTree& tree, const LocalPositions& local) {
+// Lets the certificates classify all patches of one interval.
+inline void classify_all(Certificates& certificates, const PatchTree& tree, const LocalPositions& local) {
   certificates.start(local);
   for (std::size_t p = 0; p < tree.patches.size(); ++p)
-    certificates.look(p, load(local.records(), tree.patches[p].vertex));
+    certificates.classify(p, load(local.records(), tree.patches[p].vertex));
   certificates.finish();
 }
 
@@ -45,7 +45,7 @@ struct CertifiedBody : test::Body {
     certify();
     find_all_round();
   }
-  void certify() { look_at_all(certificates, tree, local); }
+  void certify() { classify_all(certificates, tree, local); }
   // Returns certificates for the same covers that use capped clusters.
   Certificates with_caps() const {
     std::vector<CappedClusters> capped;

@@ -31,27 +31,27 @@ LocalPositions::LocalPositions(std::span<const Vec3> reference) : scale_(1), rec
   if (std::isnormal(size) && size < 1e300 && size > 1e-300) scale_ = std::ldexp(1.0, -std::ilogb(size));
 }
 
-void LocalPositions::update(const Motion& motion, const Team& team, double off) {
-  convert_all(motion, team, [](const auto& /*start*/, const auto& end) { return end; });
+void LocalPositions::update(const Motion& motion, const ThreadPool& pool, double off) {
+  convert_all(motion, pool, [](const auto& /*start*/, const auto& end) { return end; });
   add_error(off);
 }
 
 // A position start + last (end - start) rounds three times. The products are no larger than the difference of
 // two positions in the part, so all roundings together are below 2^-50 times the largest coordinate in it.
-void LocalPositions::update_beginning(const Motion& motion, double last, const Team& team) {
-  convert_all(motion, team, [&](const auto& start, const auto& end) { return start + last * (end - start); });
+void LocalPositions::update_beginning(const Motion& motion, double last, const ThreadPool& pool) {
+  convert_all(motion, pool, [&](const auto& start, const auto& end) { return start + last * (end - start); });
   add_error(0x1p-50 * largest_in_scene());
 }
 
 // Converts the start and what at(start, end) makes of the start and the end of four coordinates.
 template <class At>
-void LocalPositions::convert_all(const Motion& motion, const Team& team, const At& at) {
+void LocalPositions::convert_all(const Motion& motion, const ThreadPool& pool, const At& at) {
   const std::size_t count = records_.size();
   origin_[0] = motion.start()[0];
   const Vec3 way = common_way(motion);
   origin_[1] = at(origin_[0], Vec3(origin_[0] + way));
-  largest_.resize(team.ranges_of(count, kRange));
-  team.ranges(count, kRange, [&](std::size_t first, std::size_t last, std::size_t part) {
+  largest_.resize(pool.ranges_of(count, kRange));
+  pool.ranges(count, kRange, [&](std::size_t first, std::size_t last, std::size_t part) {
     largest_[part] = convert(motion, first, last, at);
   });
   const auto largest = std::bit_cast<float>(*std::max_element(largest_.begin(), largest_.end()));

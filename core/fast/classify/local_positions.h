@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/team.h"
+#include "core/base/thread_pool.h"
 #include "core/base/vec3.h"
 #include "core/mesh/motion.h"
 
@@ -30,10 +30,10 @@ class LocalPositions {
 
   // Converts the positions of an interval, and finds their error. `off`, in units of the scene, is by how
   // much the coordinates of `motion` may be off themselves.
-  void update(const Motion& motion, const Team& team = Team(), double off = 0);
+  void update(const Motion& motion, const ThreadPool& pool = ThreadPool(), double off = 0);
   // Does the same for the beginning of an interval, from t = 0 to `last`, and accounts for what positions at
   // that time are off.
-  void update_beginning(const Motion& motion, double last, const Team& team = Team());
+  void update_beginning(const Motion& motion, double last, const ThreadPool& pool = ThreadPool());
 
   std::span<const Record> records() const { return records_; }
   // Returns where a point of local coordinates lies in the scene, at the start (0) or the end (1).
@@ -58,7 +58,7 @@ class LocalPositions {
 
  private:
   template <class At>
-  void convert_all(const Motion& motion, const Team& team, const At& at);
+  void convert_all(const Motion& motion, const ThreadPool& pool, const At& at);
   Vec3 common_way(const Motion& motion) const;
   template <class At>
   std::int32_t convert(const Motion& motion, std::size_t first, std::size_t last, const At& at);

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "core/fast/prepare/test_body.h"
-#include "core/radial/exact_orientation.h"
+#include "core/radial/test_exact_orientation.h"
 
 namespace cscd::fast {
 namespace {
@@ -58,7 +58,7 @@ TEST(LocalPositions, KnowHowFarPositionsAreOff) {
       }
     }
     EXPECT_LT(largest, 4 * (origin.cwiseAbs().maxCoeff() + 20 * scale)) << "the bound is of use";
-    local.update(Motion(body.start, between), Team(), off);
+    local.update(Motion(body.start, between), ThreadPool(), off);
     ASSERT_TRUE(local.known());
     // The scale is a power of two, so it is known from a length.
     const double unit = static_cast<double>(local.records()[9].at[0]) / (body.start[9] - body.start[0]).x();

@@ -120,9 +120,9 @@ struct PatchNormals {
   out.longest[1] = largest_component(b);
 }
 
-[[gnu::always_inline]] inline Signs look(const PatchNormals& normals, const PatchLanes& corner,
-                                         const Rounding16& rounding, const Viewpoint& viewpoint,
-                                         float error) {
+[[gnu::always_inline]] inline Signs orientation_of(const PatchNormals& normals, const PatchLanes& corner,
+                                                   const Rounding16& rounding, const Viewpoint& viewpoint,
+                                                   float error) {
   PatchLanes c;
   for (int end = 0; end < 2; ++end)
     for (int i = 0; i < 3; ++i) c.at[end][i] = corner.at[end][i] - all_lanes(viewpoint.at[end][i]);
@@ -139,7 +139,8 @@ Signs orientation(const PatchLanes& lanes, const Patch& patch, const Viewpoint& 
   PatchNormals normals;
   PatchLanes corner;
   make_normals(lanes, patch, normals, corner);
-  return look(normals, corner, rounding_of(normals.longest[0], normals.longest[1], error), viewpoint, error);
+  return orientation_of(normals, corner, rounding_of(normals.longest[0], normals.longest[1], error),
+                        viewpoint, error);
 }
 
 void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* const (&from)[kCovers],
@@ -149,7 +150,7 @@ void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* 
   make_normals(lanes, patch, normals, corner);
   const Rounding16 rounding = rounding_of(normals.longest[0], normals.longest[1], error);
   for (std::size_t c = 0; c < kCovers; ++c)
-    out[c] = from[c] ? look(normals, corner, rounding, *from[c], error) : Signs{};
+    out[c] = from[c] ? orientation_of(normals, corner, rounding, *from[c], error) : Signs{};
 }
 
 namespace {
@@ -169,10 +170,10 @@ Float16 length_bound(Float16 squared, float error) {
 
 // Lengths. Let L be the longest edge of a triangle and R its farthest point from the viewpoint q, both at any
 // t. The normal n is at most L^2 long, so det = n . (p - q) > margin L^2 puts the plane farther than `margin`
-// from q. The heights of "clear stars keep their distance" are det over |v x w|, |(v - u) x w| or |n|, all at
-// most L max(L, R), because |v x w| is |w - v| times a distance from q. So det > height L max(L, R) makes a
-// triangle tall. A cubic exceeds what its Bernstein coefficients exceed. R is at most the distance of one
-// corner plus L.
+// from q. The heights of "clear one-rings keep their distance" are det over |v x w|, |(v - u) x w| or |n|,
+// all at most L max(L, R), because |v x w| is |w - v| times a distance from q. So det > height L max(L, R)
+// makes a triangle tall. A cubic exceeds what its Bernstein coefficients exceed. R is at most the distance of
+// one corner plus L.
 void orientations_at_distance(const PatchLanes& lanes, const Patch& patch,
                               const Viewpoint* const (&from)[kCovers], float error, float margin,
                               float height, DistantSigns& out) {

@@ -51,7 +51,7 @@ void orientations(const PatchLanes& lanes, const Patch& patch, const Viewpoint* 
 struct DistantSigns {
   Signs signs[kCovers];
   // Positive triangles that are *tall*: all their heights, as seen from the viewpoint, exceed a height
-  // ("Theorem: clear stars keep their distance", core/soundness.md).
+  // ("Theorem: clear one-rings keep their distance", core/soundness.md).
   Mask16 tall[kCovers];
 };
 // Certifies, at every t, signs of triangles whose planes are farther than `margin` from the viewpoint, and

@@ -8,7 +8,7 @@
 #include "core/fast/classify/local_positions.h"
 #include "core/fast/prepare/cut_surface.h"
 #include "core/fast/prepare/test_body.h"
-#include "core/radial/exact_orientation.h"
+#include "core/radial/test_exact_orientation.h"
 
 namespace cscd::test {
 

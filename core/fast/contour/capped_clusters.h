@@ -42,11 +42,11 @@ class CappedClusters {
                    std::span<const TriangleId> triangles, std::span<const TriangleId> targets,
                    std::span<const Vec3> positions, const FollowingPoint& observer);
 
-  // An interval is one call of `start`, which the team shares, then one call of `take` for each patch that
+  // An interval is one call of `start`, which the pool shares, then one call of `take` for each patch that
   // may matter, in any order. Then, while choose_other_rays() returns true, one call of `count` for each
   // patch of the clusters that have another ray. Then follows any number of questions.
   void start(const LocalPositions& positions, std::span<const Viewpoint> viewpoints,
-             const Team& team = Team());
+             const ThreadPool& pool = ThreadPool());
   // A patch whose triangles are all positive need not be taken if this is false.
   bool may_cross_ray(std::size_t cluster, const PatchLanes& lanes) const {
     return state_[cluster].ray->may_cross(lanes);
@@ -84,14 +84,14 @@ class CappedClusters {
     }
     void count(const Patch& triangles, const PatchLanes& lanes, Mask16 positive);
   };
-  struct Look {                    // at a cap
+  struct CapOrientation {          // at a cap
     std::vector<PatchLanes> loop;  // in registers
     std::vector<Mask16> positive;  // the positive triangles
   };
   Ray ray_through(std::size_t cluster, const Triangle& target) const;
-  void start(std::size_t cluster, Look& look);
-  void look_at(const Cap& cap, std::size_t cluster, Look& look) const;
-  void take(const Cap& cap, std::size_t cluster, Look& look);
+  void start(std::size_t cluster, CapOrientation& orientation);
+  void classify(const Cap& cap, std::size_t cluster, CapOrientation& orientation) const;
+  void take(const Cap& cap, std::size_t cluster, CapOrientation& orientation);
   void take_in_slices(const Patch& fan, const PatchLanes& lanes, unsigned triangles, std::size_t cluster);
   void add_cones(unsigned triangles, const Cones& cones, State& state);
   void take(const Patch& triangles, const PatchLanes& lanes, Mask16 positive, std::size_t cluster);
@@ -101,7 +101,8 @@ class CappedClusters {
   // [clusters]: the triangles that a ray of the cluster may go through, the best one first
   std::vector<std::vector<Triangle>> targets_;
   std::vector<State> state_;
-  std::vector<Look> looks_;  // [ranges of clusters]: room for the cap that a thread looks at
+  std::vector<CapOrientation>
+      cap_orientations_;  // [ranges of clusters]: room for the cap that a thread looks at
   const LocalPositions* positions_ = nullptr;
   std::span<const Viewpoint> viewpoints_;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// For tests only: the pairs of triangles that touch, by the exact referee.
+// For tests only: the pairs of triangles that touch, by the exact oracle.
 
 #include <Eigen/Geometry>
 #include <utility>

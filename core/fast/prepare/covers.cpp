@@ -29,7 +29,7 @@ std::size_t renumber(std::vector<std::int32_t>& cluster_of) {
 }
 
 Cover make_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                 std::vector<std::int32_t> cluster_of, const Team& team) {
+                 std::vector<std::int32_t> cluster_of, const ThreadPool& pool) {
   Cover cover{std::move(cluster_of), {}};
   std::vector<std::vector<TriangleId>> members(renumber(cover.cluster_of));
   for (std::size_t t = 0; t < cover.cluster_of.size(); ++t)
@@ -37,7 +37,7 @@ Cover make_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
       members[static_cast<std::size_t>(cover.cluster_of[t])].push_back(
           TriangleId{static_cast<std::int32_t>(t)});
   cover.observers.resize(members.size());
-  team.parallel_for(members.size(), [&](std::size_t c, std::size_t) {
+  pool.parallel_for(members.size(), [&](std::size_t c, std::size_t) {
     cover.observers[c] = observer_of(mesh, reference, members[c]);
   });
   return cover;

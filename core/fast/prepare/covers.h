@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/team.h"
+#include "core/base/thread_pool.h"
 #include "core/fast/clusters/numbers.h"
 #include "core/fast/prepare/following_point.h"
 #include "core/mesh/triangle_mesh.h"
@@ -34,7 +34,7 @@ std::size_t renumber(std::vector<std::int32_t>& cluster_of);
 // without a cluster, and numbers them anew. Places the observer
 // of each cluster where it sees as much of the cluster as possible from behind in the reference pose.
 Cover make_cover(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                 std::vector<std::int32_t> cluster_of, const Team& team = Team());
+                 std::vector<std::int32_t> cluster_of, const ThreadPool& pool = ThreadPool());
 
 // Merges each cluster that is too thin for its middle to lie well inside it with the neighbour along the
 // longest seam, the thinnest cluster first. Only clusters with at most two neighbours are merged, because a

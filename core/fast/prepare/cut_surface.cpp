@@ -73,20 +73,21 @@ void enter_cover(const TriangleMesh& mesh, const Cover& cover, std::size_t numbe
 }
 
 CutSurface cut_surface(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                       std::span<const std::int32_t> cluster_of, std::size_t least_cell, const Team& team) {
+                       std::span<const std::int32_t> cluster_of, std::size_t least_cell,
+                       const ThreadPool& pool) {
   CutSurface cut;
   auto& [covers, tree] = cut;
   std::vector<std::int32_t> parts(cluster_of.begin(), cluster_of.end());
   merge_thin_clusters(mesh, parts);
-  covers[0] = make_cover(mesh, reference, std::move(parts), team);
+  covers[0] = make_cover(mesh, reference, std::move(parts), pool);
   std::vector<std::int32_t> seams = nearest_seams(mesh, covers[0].cluster_of);
   tree = make_tree(mesh, reference,
-                   cut_into_patches(mesh, reference, {covers[0].cluster_of, seams}, least_cell, team),
+                   cut_into_patches(mesh, reference, {covers[0].cluster_of, seams}, least_cell, pool),
                    covers[0].cluster_of);
   enter_cover(mesh, covers[0], 0, tree);
-  covers[1] = make_cover(mesh, reference, rounded_to_patches(tree, std::move(seams)), team);
+  covers[1] = make_cover(mesh, reference, rounded_to_patches(tree, std::move(seams)), pool);
   enter_cover(mesh, covers[1], 1, tree);
-  covers[2] = make_cover(mesh, reference, corner_clusters(mesh, tree), team);
+  covers[2] = make_cover(mesh, reference, corner_clusters(mesh, tree), pool);
   enter_cover(mesh, covers[2], 2, tree);
   return cut;
 }

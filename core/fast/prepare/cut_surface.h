@@ -37,11 +37,11 @@ inline constexpr std::size_t kLeastCell = 96;
 // Cuts a surface along the seams of its clusters, and makes the three covers. `cluster_of`, [triangles],
 // names the cluster of each triangle: clusters of bones (core/radial/atomic_clusters.h) or clusters of the
 // surface (surface_clusters.h). Each cluster must lie in one connected component of the mesh. The observers
-// are placed in the reference pose, `reference` [vertices]. The threads of the team share the work; the
+// are placed in the reference pose, `reference` [vertices]. The threads of the pool share the work; the
 // result does not depend on their number.
 CutSurface cut_surface(const TriangleMesh& mesh, std::span<const Vec3> reference,
                        std::span<const std::int32_t> cluster_of, std::size_t least_cell = kLeastCell,
-                       const Team& team = Team());
+                       const ThreadPool& pool = ThreadPool());
 
 // Writes into the tree, for cover `number`, the cluster of each patch and the triangles of each patch that
 // lie inside that cluster.

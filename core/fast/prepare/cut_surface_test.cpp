@@ -70,9 +70,10 @@ TEST(Covers, ObserversStayWithinReachOfTheirVertices) {
 TEST(CutSurface, IsTheSameOnAnyNumberOfThreads) {
   const test::Body body(0.01, 0);
   const auto cut = [&](int threads) {
-    return saved_cut(body.mesh, body.shape.positions,
-                     cut_surface(body.mesh, body.shape.positions, body.atomic.of_triangle, 8, Team(threads)),
-                     kCovers);
+    return saved_cut(
+        body.mesh, body.shape.positions,
+        cut_surface(body.mesh, body.shape.positions, body.atomic.of_triangle, 8, ThreadPool(threads)),
+        kCovers);
   };
   const std::vector<std::byte> alone = cut(1);
   for (const int threads : {2, 5}) EXPECT_EQ(cut(threads), alone);

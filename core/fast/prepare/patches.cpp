@@ -194,12 +194,12 @@ std::vector<Vec3> centroids(const TriangleMesh& mesh, std::span<const Vec3> refe
 }
 
 PatchList cut_into_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
-                           const CuttingClusters& clusters, std::size_t least_cell, const Team& team) {
+                           const CuttingClusters& clusters, std::size_t least_cell, const ThreadPool& pool) {
   const std::vector<Vec3> centroid = centroids(mesh, reference);
   const std::vector<std::vector<TriangleId>> cells = cells_of(mesh, clusters, least_cell);
-  std::vector<std::optional<PatchCutter>> cutters(team.threads());
+  std::vector<std::optional<PatchCutter>> cutters(pool.threads());
   std::vector<PatchCutter::Patches> cut(cells.size());
-  team.parallel_for(cells.size(), [&](std::size_t cell, std::size_t thread) {
+  pool.parallel_for(cells.size(), [&](std::size_t cell, std::size_t thread) {
     if (!cutters[thread]) cutters[thread].emplace(mesh, centroid);
     cut[cell] = cutters[thread]->cut(cells[cell]);
   });

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/team.h"
+#include "core/base/thread_pool.h"
 #include "core/fast/prepare/covers.h"
 #include "core/geometry/simd_floats.h"
 #include "core/mesh/triangle_mesh.h"
@@ -93,8 +93,8 @@ struct PatchTree {
   // Visits the inner nodes, children before their parents. Walking through all nodes instead would cost a
   // branch a node that no processor foresees.
   template <class Take>  // (node, its entry), from any thread
-  void for_each_inner_upwards(const Team& team, const Take& take) const {
-    const std::size_t count = inner.size(), ranges = team.ranges_of(count, kInnerTogether);
+  void for_each_inner_upwards(const ThreadPool& pool, const Take& take) const {
+    const std::size_t count = inner.size(), ranges = pool.ranges_of(count, kInnerTogether);
     const auto visit = [&](std::size_t i) {
       take(static_cast<std::size_t>(inner[i]), nodes[static_cast<std::size_t>(inner[i])]);
     };
@@ -103,13 +103,13 @@ struct PatchTree {
       return;
     }
     // The few nodes of a range below which there are nodes of other ranges wait for the end.
-    team.ranges(count, kInnerTogether, [&](std::size_t first, std::size_t last, std::size_t) {
+    pool.ranges(count, kInnerTogether, [&](std::size_t first, std::size_t last, std::size_t) {
       for (std::size_t i = last; i-- > first;)
         if (static_cast<std::size_t>(inner_end[i]) <= last) visit(i);
     });
     for (std::size_t part = ranges; part-- > 0;) {
-      const std::size_t first = Team::range_begin(count, ranges, part),
-                        last = Team::range_begin(count, ranges, part + 1);
+      const std::size_t first = ThreadPool::range_begin(count, ranges, part),
+                        last = ThreadPool::range_begin(count, ranges, part + 1);
       for (std::size_t i = last; i-- > first;)
         if (static_cast<std::size_t>(inner_end[i]) > last) visit(i);
     }
@@ -160,7 +160,7 @@ struct PatchList {
 // patch crosses a seam of the second clusters only where that seam would make too small a cell.
 PatchList cut_into_patches(const TriangleMesh& mesh, std::span<const Vec3> reference,
                            const CuttingClusters& clusters, std::size_t least_cell,
-                           const Team& team = Team());
+                           const ThreadPool& pool = ThreadPool());
 
 // Returns the middle of each triangle, [triangles].
 std::vector<Vec3> centroids(const TriangleMesh& mesh, std::span<const Vec3> reference);

@@ -143,12 +143,12 @@ TEST(Patches, InnerNodesAreVisitedAfterTheirChildrenOnAnyNumberOfThreads) {
   const TriangleMesh mesh = tube.mesh();
   const CutSurface cut =
       cut_surface(mesh, tube.positions, std::vector<std::int32_t>(mesh.triangle_count(), 0));
-  ASSERT_GT(cut.tree.inner.size(), Team::kWorthWaking * PatchTree::kInnerTogether);
+  ASSERT_GT(cut.tree.inner.size(), ThreadPool::kWorthWaking * PatchTree::kInnerTogether);
   for (const int threads : {1, 2, 3, 8}) {
-    const Team team(threads);
+    const ThreadPool pool(threads);
     std::vector<std::size_t> below(cut.tree.nodes.size(), 0);  // patches
     for (std::size_t n = 0; n < below.size(); ++n) below[n] = cut.tree.nodes[n].is_leaf();
-    cut.tree.for_each_inner_upwards(team, [&](std::size_t n, const PatchTree::Node& node) {
+    cut.tree.for_each_inner_upwards(pool, [&](std::size_t n, const PatchTree::Node& node) {
       below[n] += below[node.left()] + below[node.right()];
     });
     EXPECT_EQ(below[0], cut.tree.patches.size()) << threads << " threads";

@@ -20,7 +20,7 @@ bool is_identity(const Quaternion& q) {
 }
 
 Transform rotation_map(const Quaternion& q) {
-  return from_parts(Vec3::Zero(), q, Vec3::Ones());
+  return from_trs(Vec3::Zero(), q, Vec3::Ones());
 }
 
 // Refuses vectors that are not finite: a rotation that is not finite would silently become the identity.
@@ -99,7 +99,7 @@ class ChainBuilder {
       Node& node = character_.nodes[n];
       node.name = n + 1 == character_.nodes.size() ? name : name + " (helper)";
       if (node.written)
-        node.local = from_parts(node.written->move, node.written->rotation, node.written->scale);
+        node.local = from_trs(node.written->move, node.written->rotation, node.written->scale);
     }
     return current();
   }
@@ -192,9 +192,9 @@ ModelTransform read_transform(const Object& model) {
 }
 
 Transform geometric_transform(const Object& model) {
-  return from_parts(finite_vector(model, "GeometricTranslation", Vec3::Zero()),
-                    from_euler(finite_vector(model, "GeometricRotation", Vec3::Zero()), kXyz),
-                    finite_vector(model, "GeometricScaling", Vec3::Ones()));
+  return from_trs(finite_vector(model, "GeometricTranslation", Vec3::Zero()),
+                  from_euler(finite_vector(model, "GeometricRotation", Vec3::Zero()), kXyz),
+                  finite_vector(model, "GeometricScaling", Vec3::Ones()));
 }
 
 Chain add_model(Character& character, const std::string& name, const ModelTransform& t,
@@ -218,8 +218,8 @@ Chain add_model(Character& character, const std::string& name, const ModelTransf
     Transform whole = rotation_map(t.pre);
     whole.origin = t.move + t.before;
     whole = composed(composed(whole, rotation_map(turn)), rotation_map(t.post));
-    whole = composed(whole, from_parts(t.between, {}, t.scale));
-    whole = composed(whole, from_parts(t.end, {}, Vec3::Ones()));
+    whole = composed(whole, from_trs(t.between, {}, t.scale));
+    whole = composed(whole, from_trs(t.end, {}, Vec3::Ones()));
     character.nodes.push_back({name, parent.last, whole});
     chain.last = static_cast<int>(character.nodes.size()) - 1;
     return chain;

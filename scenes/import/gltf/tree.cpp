@@ -49,7 +49,7 @@ Node node_of(const tinygltf::Node& source, int parent) {
     written.rotation = unit({source.rotation[3], source.rotation[0], source.rotation[1], source.rotation[2]},
                             "node '" + source.name + "' of the glTF file");
   if (!source.scale.empty()) written.scale = {source.scale[0], source.scale[1], source.scale[2]};
-  node.local = from_parts(written.move, written.rotation, written.scale);
+  node.local = from_trs(written.move, written.rotation, written.scale);
   node.written = written;
   return node;
 }

@@ -62,7 +62,7 @@ TEST(GltfTree, MirroredAndUnevenScalesStayAsWritten) {
   file.root["nodes"][4]["scale"] = {-1, 2, 1};
   Character wanted = bending_tube();
   wanted.nodes[4].written = ScaleTurnMove{Vec3(1, 0, 0), Quaternion(), Vec3(-1, 2, 1)};
-  wanted.nodes[4].local = from_parts(Vec3(1, 0, 0), Quaternion(), Vec3(-1, 2, 1));
+  wanted.nodes[4].local = from_trs(Vec3(1, 0, 0), Quaternion(), Vec3(-1, 2, 1));
   const Character got = read(file);
   expect_same_motion(got, wanted);
   EXPECT_LT(pose_at(got, got.animations[0], 0.7)[4].determinant(), 0);

@@ -32,7 +32,7 @@ part exact core/elementary/exact/{exact,algebraic,closeness,polynomial,touch}
 part starts core/elementary/exact/static_contact
 part meshes core/detect/{double_filter,carried_pairs,compose,contact,feature_owners,filter_block,no_contact_before} \
   core/mesh/triangle_mesh core/geometry/feature_distance
-part team core/base/team
+part thread_pool core/base/thread_pool
 part exclusions core/detect/exclusions
 part bounds core/hierarchy/{bounds,loose_vertices,scalar_bounds,tree,vertex_bounds}
 part plain core/detect/plain_sign

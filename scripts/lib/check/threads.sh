@@ -26,14 +26,14 @@ g++ -std=c++20 -O1 -g -fsanitize=thread -I library/include -isystem /usr/include
 # Without this the script could pass because nothing was watched.
 say "a planted race"
 cat >$build/race.cpp <<'TEXT'
-#include "core/base/team.h"
+#include "core/base/thread_pool.h"
 int main() {
   int sum = 0;
-  cscd::Team(2).parallel_for(1000, [&](std::size_t part, std::size_t) { sum += int(part); });
+  cscd::ThreadPool(2).parallel_for(1000, [&](std::size_t part, std::size_t) { sum += int(part); });
   return sum < 0;
 }
 TEXT
-g++ -std=c++20 -O1 -g -fsanitize=thread -I . -isystem /usr/include/eigen3 $build/race.cpp core/base/team.cpp -ltbb \
+g++ -std=c++20 -O1 -g -fsanitize=thread -I . -isystem /usr/include/eigen3 $build/race.cpp core/base/thread_pool.cpp -ltbb \
   -o $build/race
 status=0
 $build/race 2>/dev/null || status=$?

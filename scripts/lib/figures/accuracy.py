@@ -91,7 +91,7 @@ def page(record, drawn):
     environment = record["environment"]
     text = ["# This much truth costs this much time", ""]
     text += ["Elementary tests (a vertex and a face, or two edges, over one interval) asked the same queries, each answer "
-             "held against the exact referee.", ""]
+             "held against the exact oracle.", ""]
     text += ["## What to choose", ""]
     lines = []
     for user, rule, name, group in recommendations(record, by_group):
@@ -122,7 +122,7 @@ def page(record, drawn):
     counted = ", ".join(f"{n} {everything[n].queries:,}" for n in proofs)
     text += ["## How to read it", "",
              f"- Queries asked of the rows that prove “apart”: {counted}. Promises "
-             f"{'all kept' if worst['ok'] else 'BROKEN: ' + '; '.join(worst['broken'])}; the referee contradicts "
+             f"{'all kept' if worst['ok'] else 'BROKEN: ' + '; '.join(worst['broken'])}; the oracle contradicts "
              f"{record['published_truths']['contradicted']} of {record['published_truths']['queries']:,} published truths.",
              "- *Contacts lost*: “apart” where the features touch, as a share of the contacts. *Invented*: “contact” where "
              "they do not, as a share of the rest. *Undecided* is neither; a caller takes it for a contact.",
@@ -173,7 +173,7 @@ def cost_of_exactness(record):
     return (["## What being exact costs: `filtered_exact` over `newton`", "",
              "Time of all queries over the time of all queries, both asked the same blocks in turn (95 % bootstrap interval over "
              "blocks); and the share of queries that `filtered_exact` answers by its filter, in doubles, those that leave doubles "
-             "for multi-word integers, and those of them that end at the referee in GMP.", ""] +
+             "for multi-word integers, and those of them that end at the oracle in GMP.", ""] +
             table(["queries of", "queries", "time over `newton`", "filter", "doubles", "leave doubles", "reach GMP"], lines) +
             [""])
 

@@ -2,7 +2,7 @@
 
   scripts/find-faults mutants                           300 mutants, drawn at random from all places; goes on where it was stopped
   scripts/find-faults mutants --resume --stages own,rooms,proof,slow    asks those that are still alive by the other tests, too
-  scripts/find-faults mutants --only core/fast/certify/stars.cpp --count 40
+  scripts/find-faults mutants --only core/fast/certify/one_rings.cpp --count 40
   scripts/find-faults mutants --list --count 0          the places, without a run
   scripts/find-faults mutants --record                  writes results/trust/DATE-mutants.json from the file of results
   scripts/find-faults mutants --from results/trust/2026-11-26-mutants-2.json --stages room,own,rooms

@@ -80,7 +80,7 @@ def add_threads(record):
     shown = watched[watched.index("== a planted race"):]
     record["says"] += (" Then all code that shares work among threads under ThreadSanitizer, its answers compared with those of one "
                        "thread. ThreadSanitizer watches plain threads, because it cannot see into oneTBB's library "
-                       "(`core/base/team.cpp`), and has to report a planted race first.")
+                       "(`core/base/thread_pool.cpp`), and has to report a planted race first.")
     record["headline"] += ", a race or another answer on threads" if status else ", no race on threads"
     record["figures"] += [["findings of ThreadSanitizer", int(status != 0)]]
     record["tables"] += [{"title": "What ThreadSanitizer watched", "head": ["lines of `scripts/check threads`"], "text_columns": 1,

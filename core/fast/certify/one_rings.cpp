@@ -1,4 +1,4 @@
-#include "core/fast/certify/stars.h"
+#include "core/fast/certify/one_rings.h"
 
 #include <algorithm>
 #include <array>
@@ -35,8 +35,8 @@ float sum(Float16 v) {
   return folded(v, [](auto a, auto b) { return a + b; });
 }
 
-// Returns the least height of a star's triangles at any t, seen along a direction of unit length. `area` is
-// at most twice each triangle's area, seen so, and `a` and `b` are its edges at the vertex. Lengths may be
+// Returns the least height of a one-ring's triangles at any t, seen along a direction of unit length. `area`
+// is at most twice each triangle's area, seen so, and `a` and `b` are its edges at the vertex. Lengths may be
 // off by `off`.
 float least_height(Float16 area, const PatchLanes& a, const PatchLanes& b, Float16 off) {
   Float16 longest = {};  // squared
@@ -85,7 +85,7 @@ std::vector<std::int32_t> ring_of(std::span<const Ends> ends) {
 
 }  // namespace
 
-Stars::Stars(const TriangleMesh& mesh) {
+OneRings::OneRings(const TriangleMesh& mesh) {
   offset_.push_back(0);
   std::vector<Ends> ends;
   for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
@@ -102,12 +102,12 @@ Stars::Stars(const TriangleMesh& mesh) {
   }
 }
 
-void Stars::warm_cache() const {
+void OneRings::warm_cache() const {
   cscd::warm_cache(std::span(offset_));
   cscd::warm_cache(std::span(ring_));
 }
 
-bool Stars::flat(VertexId vertex, const LocalPositions& positions, float distance) const {
+bool OneRings::flat(VertexId vertex, const LocalPositions& positions, float distance) const {
   const auto first = static_cast<std::size_t>(offset_[+vertex]);
   const std::size_t count = static_cast<std::size_t>(offset_[+vertex + 1]) - first;
   if (count == 0 || count > kLanes16 || !positions.known()) return false;

@@ -1,4 +1,4 @@
-#include "core/base/team.h"
+#include "core/base/thread_pool.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/info.h>
@@ -14,23 +14,23 @@
 
 namespace cscd {
 
-struct Team::Arena {
+struct ThreadPool::Arena {
   tbb::task_arena arena;
 };
 
-Team::Team(Team&&) noexcept = default;
-Team& Team::operator=(Team&&) noexcept = default;
-Team::~Team() = default;
+ThreadPool::ThreadPool(ThreadPool&&) noexcept = default;
+ThreadPool& ThreadPool::operator=(ThreadPool&&) noexcept = default;
+ThreadPool::~ThreadPool() = default;
 
 #ifdef __SANITIZE_THREAD__
 
 // ThreadSanitizer cannot see how the threads of oneTBB's library wait for each other, and would report every
 // part. So it watches plain threads. They take parts by a counter that orders nothing between them: what one
 // part writes, no other part may touch.
-Team::Team(int threads) : threads_(static_cast<std::size_t>(threads)) {}
+ThreadPool::ThreadPool(int threads) : threads_(static_cast<std::size_t>(threads)) {}
 
-void Team::share_out(std::size_t parts, const void* context,
-                     void (*work)(const void* context, std::size_t part, std::size_t thread)) const {
+void ThreadPool::share_out(std::size_t parts, const void* context,
+                           void (*work)(const void* context, std::size_t part, std::size_t thread)) const {
   std::atomic<std::size_t> next = 0;
   const auto run = [&](std::size_t thread) {
     for (std::size_t part; (part = next.fetch_add(1, std::memory_order_relaxed)) < parts;)
@@ -43,14 +43,14 @@ void Team::share_out(std::size_t parts, const void* context,
 
 #else
 
-Team::Team(int threads) : threads_(static_cast<std::size_t>(threads)) {
+ThreadPool::ThreadPool(int threads) : threads_(static_cast<std::size_t>(threads)) {
   if (threads > 1)  // oneTBB warns on standard error if it is asked for more threads than cores
     arena_ =
         std::make_unique<Arena>(Arena{tbb::task_arena(std::min(threads, tbb::info::default_concurrency()))});
 }
 
-void Team::share_out(std::size_t parts, const void* context,
-                     void (*work)(const void* context, std::size_t part, std::size_t thread)) const {
+void ThreadPool::share_out(std::size_t parts, const void* context,
+                           void (*work)(const void* context, std::size_t part, std::size_t thread)) const {
   arena_->arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, parts),

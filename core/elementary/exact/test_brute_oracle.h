@@ -1,6 +1,6 @@
 #pragma once
 
-// For tests only: a second referee that shares no algorithm with the first (exact.h). It uses rational
+// For tests only: a second oracle that shares no algorithm with the first (exact.h). It uses rational
 // arithmetic, parameters of the touching points (barycentric coordinates, positions along the edges) instead
 // of projected orientations, Sturm sequences instead of Descartes' rule, and Tarski queries instead of
 // greatest common divisors. It is slow (up to tens of milliseconds) and meant for coordinates that are small

@@ -8,20 +8,20 @@
 namespace cscd {
 
 // A group of threads that share out the parts of one piece of work. The caller's result must not depend on
-// which thread does which part. The file team.cpp is the only place in the project that knows oneTBB.
-class Team {
+// which thread does which part. The file pool.cpp is the only place in the project that knows oneTBB.
+class ThreadPool {
  public:
-  // Makes a team of `threads` threads, the calling thread included; `threads` is at least 1. At most as many
+  // Makes a pool of `threads` threads, the calling thread included; `threads` is at least 1. At most as many
   // of them run at a time as the machine has cores.
-  explicit Team(int threads = 1);
-  ~Team();
-  Team(Team&&) noexcept;
-  Team& operator=(Team&&) noexcept;
+  explicit ThreadPool(int threads = 1);
+  ~ThreadPool();
+  ThreadPool(ThreadPool&&) noexcept;
+  ThreadPool& operator=(ThreadPool&&) noexcept;
 
   std::size_t threads() const { return threads_; }
 
   // Calls work(part, thread) once for each part in [0, parts) and returns when all calls have returned.
-  // `thread` is the number of the thread that makes the call, in [0, threads()). A team of one thread does
+  // `thread` is the number of the thread that makes the call, in [0, threads()). A pool of one thread does
   // the parts in order. `work` must not throw.
   template <class Work>
   void parallel_for(std::size_t parts, const Work& work) const {
@@ -48,7 +48,7 @@ class Team {
   static std::size_t range_begin(std::size_t count, std::size_t parts, std::size_t part) {
     return count * part / parts;
   }
-  // Returns the number of ranges that ranges() makes. A team of one thread has one range. So has a team that
+  // Returns the number of ranges that ranges() makes. A pool of one thread has one range. So has a pool that
   // would be done before another of its threads has woken up, because there are fewer than kWorthWaking times
   // `least` members. Others have up to four ranges a thread.
   std::size_t ranges_of(std::size_t count, std::size_t least) const {
