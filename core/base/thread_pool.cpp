@@ -1,10 +1,12 @@
 #include "core/base/thread_pool.h"
 
+#ifdef CSCD_TBB
 #include <tbb/blocked_range.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
+#endif
 
 #ifdef __SANITIZE_THREAD__
 #include <atomic>
@@ -15,7 +17,9 @@
 namespace cscd {
 
 struct ThreadPool::Arena {
+#ifdef CSCD_TBB
   tbb::task_arena arena;
+#endif
 };
 
 ThreadPool::ThreadPool(ThreadPool&&) noexcept = default;
@@ -41,7 +45,7 @@ void ThreadPool::share_out(std::size_t parts, const void* context,
   run(0);
 }
 
-#else
+#elif defined CSCD_TBB
 
 ThreadPool::ThreadPool(int threads) : threads_(static_cast<std::size_t>(threads)) {
   if (threads > 1)  // oneTBB warns on standard error if it is asked for more threads than cores
@@ -62,10 +66,20 @@ void ThreadPool::share_out(std::size_t parts, const void* context,
   });
 }
 
+#else
+
+// A pool of one thread never shares out.
+ThreadPool::ThreadPool(int /*threads*/) : threads_(1) {}
+void ThreadPool::share_out(std::size_t, const void*, void (*)(const void*, std::size_t, std::size_t)) const {}
+
 #endif
 
 void on_this_thread(const std::function<void()>& work) {
+#ifdef CSCD_TBB
   tbb::task_arena(1).execute(work);
+#else
+  work();
+#endif
 }
 
 }  // namespace cscd

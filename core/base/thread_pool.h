@@ -12,7 +12,7 @@ namespace cscd {
 class ThreadPool {
  public:
   // Makes a pool of `threads` threads, the calling thread included; `threads` is at least 1. At most as many
-  // of them run at a time as the machine has cores.
+  // of them run at a time as the machine has cores. Built without oneTBB, every pool has one thread.
   explicit ThreadPool(int threads = 1);
   ~ThreadPool();
   ThreadPool(ThreadPool&&) noexcept;

@@ -1,5 +1,5 @@
 // When does a mesh first touch itself in one step, and where?
-//   c++ -std=c++20 first_contact.cpp -lcscd -ltbb -lgmpxx -lgmp
+//   c++ -std=c++20 first_contact.cpp -lcscd -ltbb
 
 #include <cscd/cscd.h>
 #include <iostream>

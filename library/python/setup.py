@@ -6,8 +6,8 @@
 
 Work is done in a folder for temporary files, and nothing is written into the sources.
 
-Compiling needs Debian's cmake, g++, libeigen3-dev, libtbb-dev, libgmp-dev, pybind11-dev and python3-dev. The wheel uses the
-libraries oneTBB and GMP of the machine, so it is for systems like the one that made it.
+Compiling needs Debian's cmake, g++, libeigen3-dev, libboost-dev, libtbb-dev, pybind11-dev and python3-dev. The wheel uses the
+oneTBB of the machine, so it is for systems like the one that made it.
 """
 import atexit
 import os

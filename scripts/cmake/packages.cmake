@@ -19,7 +19,7 @@ set(CPACK_CUSTOM_INSTALL_VARIABLES CSCD_PYTHON_FOLDER=lib/python3/dist-packages
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libcscd-dev)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev, libgmp-dev")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libeigen3-dev, libtbb-dev")
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "${summary}: C++ library")
 if(TARGET cscd_python)
   list(APPEND CPACK_COMPONENTS_ALL python)

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <random>
-#include <string>
 
 #include "core/elementary/exact/algebraic.h"
 
@@ -17,10 +16,10 @@ struct Both {
 
 Both both(const std::vector<std::int64_t>& c) {
   Both p;
-  mpz_class terms[4];
+  exact::Integer terms[4];
   for (std::size_t i = 0; i < c.size(); ++i) {
     p.ours.c[i] = Wide(c[i]);
-    terms[i] = static_cast<long>(c[i]);
+    terms[i] = c[i];
   }
   p.ours.trim();
   p.oracle = exact::Polynomial(terms[0], terms[1], terms[2], terms[3]);
@@ -120,11 +119,12 @@ TEST(IntegerRoots, TellsRootsApartFarBelowTheSpacingOfDoubles) {
   }
 }
 
-Wide wide(const mpz_class& value) {
+Wide wide(const exact::Integer& value) {
   Wide result;
-  const std::string digits = mpz_class(abs(value)).get_str(2);
-  for (const char digit : digits) result = (result << 1) + Wide(digit - '0');
-  return sgn(value) < 0 ? -result : result;
+  const exact::Integer size = abs(value);
+  for (unsigned bit = size == 0 ? 0 : msb(size) + 1; bit-- > 0;)
+    result = (result << 1) + Wide(bit_test(size, bit) ? 1 : 0);
+  return value.sign() < 0 ? -result : result;
 }
 
 // Polynomials have two roots that are about 2^(-places/2) apart, between the same two doubles, or miss
@@ -133,9 +133,9 @@ TEST(IntegerRoots, TellsPairsApartFarBelowTheSpacingOfDoubles) {
   // A polynomial that has a double root at 1/3 for off = 0, and nearly has one otherwise. Degree 1 has a
   // single root.
   const auto near_third = [](int degree, int places, int off) {
-    const mpz_class one = mpz_class(1) << static_cast<unsigned>(places);
+    const exact::Integer one = exact::Integer(1) << static_cast<unsigned>(places);
     Both p;
-    mpz_class c[4] = {one, -6 * one, 9 * one, 0};  // (3 t - 1)^2
+    exact::Integer c[4] = {one, -6 * one, 9 * one, 0};  // (3 t - 1)^2
     if (degree == 1) c[0] = -one, c[1] = 3 * one, c[2] = 0;
     if (degree == 3) c[3] = 9 * one, c[2] = 12 * one, c[1] = -11 * one, c[0] = 2 * one;  // times t + 2
     c[0] += off;

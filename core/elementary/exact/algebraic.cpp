@@ -39,7 +39,7 @@ Polynomial square_free_part(const Polynomial& p) {
 
 // The primitive linear polynomial with the root t.
 Polynomial linear_factor(const Dyadic& t) {
-  return {-t.numerator, mpz_class(1) << t.exponent};
+  return {-t.numerator, Integer(1) << t.exponent};
 }
 
 struct Interval {
@@ -100,7 +100,7 @@ double AlgebraicNumber::guess() const {
   std::array<long, Polynomial::kMaxDegree + 1> exponent{};
   long largest = 0;
   for (std::size_t i = 0; i < c.size(); ++i) {
-    c[i] = mpz_get_d_2exp(&exponent[i], f[static_cast<int>(i)].get_mpz_t());
+    c[i] = truncated(f[static_cast<int>(i)], exponent[i]);
     largest = std::max(largest, exponent[i]);
   }
   for (std::size_t i = 0; i < c.size(); ++i)
@@ -152,7 +152,7 @@ TimeEnclosure AlgebraicNumber::enclosure() {
 }
 
 int AlgebraicNumber::sign_of(const Polynomial& p) {
-  if (p.degree() <= 0) return sgn(p[0]);
+  if (p.degree() <= 0) return p[0].sign();
   const auto certain_sign = [&] {  // 0 if not certain
     if (is_dyadic()) return sign_at(p, lower_);
     const UnitIntervalSigns signs = signs_on_unit_interval(p.stretched(lower_, upper_));
@@ -175,7 +175,7 @@ int AlgebraicNumber::sign_of(const Polynomial& p) {
 
 std::vector<AlgebraicNumber> roots_in_unit_interval(const Polynomial& polynomial) {
   assert(!polynomial.is_zero());
-  const Dyadic zero{}, one{mpz_class(1), 0};
+  const Dyadic zero{}, one{Integer(1), 0};
   std::vector<AlgebraicNumber> roots;
   Polynomial f = polynomial;
   for (const Dyadic* end : {&zero, &one}) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -12,7 +13,7 @@ Dyadic dyadic(double x) {
   assert(std::isfinite(x));
   int exponent = 0;
   const double fraction = std::frexp(x, &exponent);
-  mpz_class numerator = std::ldexp(fraction, 53);
+  Integer numerator = static_cast<std::int64_t>(std::ldexp(fraction, 53));
   exponent -= 53;
   if (exponent >= 0) {
     numerator <<= static_cast<unsigned long>(exponent);
@@ -21,33 +22,42 @@ Dyadic dyadic(double x) {
   // Make the numerator short, so that all numbers computed from it are short.
   unsigned long places = static_cast<unsigned long>(-exponent);
   if (numerator == 0) return {};
-  const unsigned long spare = std::min<unsigned long>(mpz_scan1(numerator.get_mpz_t(), 0), places);
+  const unsigned long spare = std::min(trailing_zeros(numerator), places);
   numerator >>= spare;
   return {std::move(numerator), places - spare};
 }
 
 int compare(const Dyadic& a, const Dyadic& b) {
-  if (a.exponent == b.exponent) return cmp(a.numerator, b.numerator);
-  if (a.exponent < b.exponent) return cmp(mpz_class(a.numerator << (b.exponent - a.exponent)), b.numerator);
-  return cmp(a.numerator, mpz_class(b.numerator << (a.exponent - b.exponent)));
+  if (a.exponent == b.exponent) return a.numerator.compare(b.numerator);
+  if (a.exponent < b.exponent) return Integer(a.numerator << (b.exponent - a.exponent)).compare(b.numerator);
+  return a.numerator.compare(Integer(b.numerator << (a.exponent - b.exponent)));
 }
 
 Dyadic midpoint(const Dyadic& a, const Dyadic& b) {
   const unsigned long exponent = std::max(a.exponent, b.exponent);
-  Dyadic middle{
-      mpz_class(a.numerator << (exponent - a.exponent)) + mpz_class(b.numerator << (exponent - b.exponent)),
-      exponent + 1};
+  Dyadic middle{(a.numerator << (exponent - a.exponent)) + (b.numerator << (exponent - b.exponent)),
+                exponent + 1};
   if (middle.numerator == 0) return {};
-  const unsigned long spare =
-      std::min<unsigned long>(mpz_scan1(middle.numerator.get_mpz_t(), 0), middle.exponent);
+  const unsigned long spare = std::min(trailing_zeros(middle.numerator), middle.exponent);
   middle.numerator >>= spare;
   middle.exponent -= spare;
   return middle;
 }
 
+double truncated(const Integer& x, long& exponent) {
+  constexpr long kDigits = std::numeric_limits<double>::digits;
+  exponent = 0;
+  if (x == 0) return 0;
+  const Integer size = abs(x);
+  exponent = static_cast<long>(msb(size)) + 1;
+  const long spare = exponent - kDigits;
+  const auto digits = static_cast<std::int64_t>(spare > 0 ? size >> spare : size << -spare);
+  return std::ldexp(static_cast<double>(x.sign() * digits), -static_cast<int>(kDigits));
+}
+
 double double_below(const Dyadic& x) {
-  signed long exponent = 0;
-  const double fraction = mpz_get_d_2exp(&exponent, x.numerator.get_mpz_t());  // truncated
+  long exponent = 0;
+  const double fraction = truncated(x.numerator, exponent);
   const double near = std::ldexp(fraction, static_cast<int>(exponent - static_cast<long>(x.exponent)));
   // ldexp rounds only a subnormal result, possibly upwards.
   return compare(dyadic(near), x) > 0 ? std::nextafter(near, -std::numeric_limits<double>::infinity()) : near;
@@ -59,25 +69,25 @@ double double_above(const Dyadic& x) {
                                         : std::nextafter(below, std::numeric_limits<double>::infinity());
 }
 
-Polynomial::Polynomial(mpz_class constant) {
+Polynomial::Polynomial(Integer constant) {
   c_[0] = std::move(constant);
   trim();
 }
 
-Polynomial::Polynomial(mpz_class constant, mpz_class slope) {
+Polynomial::Polynomial(Integer constant, Integer slope) {
   c_[0] = std::move(constant);
   c_[1] = std::move(slope);
   trim();
 }
 
-Polynomial::Polynomial(mpz_class c0, mpz_class c1, mpz_class c2, mpz_class c3)
+Polynomial::Polynomial(Integer c0, Integer c1, Integer c2, Integer c3)
     : c_{std::move(c0), std::move(c1), std::move(c2), std::move(c3)} {
   trim();
 }
 
 void Polynomial::trim() {
   degree_ = kMaxDegree;
-  while (degree_ >= 0 && sgn((*this)[degree_]) == 0) --degree_;
+  while (degree_ >= 0 && (*this)[degree_] == 0) --degree_;
 }
 
 Polynomial operator+(const Polynomial& a, const Polynomial& b) {
@@ -103,24 +113,22 @@ Polynomial operator*(const Polynomial& a, const Polynomial& b) {
 void Polynomial::add_product(const Polynomial& a, const Polynomial& b) {
   assert(a.degree_ < 0 || b.degree_ < 0 || a.degree_ + b.degree_ <= kMaxDegree);
   for (int i = 0; i <= a.degree_; ++i)
-    for (int j = 0; j <= b.degree_; ++j)
-      mpz_addmul(at(i + j).get_mpz_t(), a[i].get_mpz_t(), b[j].get_mpz_t());
+    for (int j = 0; j <= b.degree_; ++j) at(i + j) += a[i] * b[j];
   trim();
 }
 
 void Polynomial::subtract_product(const Polynomial& a, const Polynomial& b) {
   assert(a.degree_ < 0 || b.degree_ < 0 || a.degree_ + b.degree_ <= kMaxDegree);
   for (int i = 0; i <= a.degree_; ++i)
-    for (int j = 0; j <= b.degree_; ++j)
-      mpz_submul(at(i + j).get_mpz_t(), a[i].get_mpz_t(), b[j].get_mpz_t());
+    for (int j = 0; j <= b.degree_; ++j) at(i + j) -= a[i] * b[j];
   trim();
 }
 
 Polynomial Polynomial::stretched(const Dyadic& from, const Dyadic& to) const {
   if (degree_ <= 0) return *this;
   const unsigned long k = std::max(from.exponent, to.exponent);
-  const mpz_class a = from.numerator << (k - from.exponent);
-  const mpz_class width = mpz_class(to.numerator << (k - to.exponent)) - a;
+  const Integer a = from.numerator << (k - from.exponent);
+  const Integer width = (to.numerator << (k - to.exponent)) - a;
   if (k == 0 && a == 0 && width == 1) return *this;
   Polynomial result;
   for (int i = 0; i <= degree_; ++i)
@@ -129,7 +137,7 @@ Polynomial Polynomial::stretched(const Dyadic& from, const Dyadic& to) const {
   if (a != 0)
     for (int i = 0; i < degree_; ++i)
       for (int j = degree_ - 1; j >= i; --j) result.at(j) += a * result[j + 1];
-  mpz_class scale = width;
+  Integer scale = width;
   for (int i = 1; i <= degree_; ++i) {
     result.at(i) *= scale;
     scale *= width;
@@ -147,11 +155,10 @@ Polynomial Polynomial::derivative() const {
 
 Polynomial Polynomial::primitive_part() const {
   if (degree_ < 0) return *this;
-  mpz_class content;
+  Integer content;
   for (int i = 0; i <= degree_; ++i) content = gcd(content, (*this)[i]);
   Polynomial result;
-  for (int i = 0; i <= degree_; ++i)
-    mpz_divexact(result.at(i).get_mpz_t(), (*this)[i].get_mpz_t(), content.get_mpz_t());
+  for (int i = 0; i <= degree_; ++i) result.at(i) = (*this)[i] / content;
   result.trim();
   return result;
 }
@@ -164,7 +171,7 @@ Polynomial greatest_common_divisor(Polynomial a, Polynomial b) {
   while (!b.is_zero()) {
     while (a.degree_ >= b.degree_) {
       const int shift = a.degree_ - b.degree_;
-      const mpz_class lead_a = a[a.degree_], lead_b = b[b.degree_];
+      const Integer lead_a = a[a.degree_], lead_b = b[b.degree_];
       for (int i = 0; i <= a.degree_; ++i) a.at(i) *= lead_b;
       for (int i = 0; i <= b.degree_; ++i) a.at(i + shift) -= lead_a * b[i];
       a.trim();
@@ -180,8 +187,8 @@ Polynomial exact_quotient(const Polynomial& p, const Polynomial& divisor) {
   Polynomial rest = p, quotient;
   while (rest.degree_ >= divisor.degree_) {
     const int shift = rest.degree_ - divisor.degree_;
-    mpz_class& term = quotient.at(shift);
-    mpz_divexact(term.get_mpz_t(), rest[rest.degree_].get_mpz_t(), divisor[divisor.degree_].get_mpz_t());
+    Integer& term = quotient.at(shift);
+    term = rest[rest.degree_] / divisor[divisor.degree_];
     for (int i = 0; i <= divisor.degree_; ++i) rest.at(i + shift) -= term * divisor[i];
     rest.trim();
   }
@@ -193,28 +200,27 @@ Polynomial exact_quotient(const Polynomial& p, const Polynomial& divisor) {
 int sign_at(const Polynomial& p, const Dyadic& t) {
   if (p.is_zero()) return 0;
   // Compute 2^(exponent degree) p(t) by Horner's scheme.
-  mpz_class value = p[p.degree()], term;
+  Integer value = p[p.degree()];
   for (int i = p.degree() - 1; i >= 0; --i) {
     value *= t.numerator;
-    mpz_mul_2exp(term.get_mpz_t(), p[i].get_mpz_t(), t.exponent * static_cast<unsigned long>(p.degree() - i));
-    value += term;
+    value += p[i] << (t.exponent * static_cast<unsigned long>(p.degree() - i));
   }
-  return sgn(value);
+  return value.sign();
 }
 
 UnitIntervalSigns signs_on_unit_interval(const Polynomial& p) {
   // The Bernstein coefficient of number j, times C(n, j), is the sum of C(n - i, j - i) c_i over i <= j.
   const int n = p.degree();
   UnitIntervalSigns result{0, 0};
-  mpz_class coefficient;
+  Integer coefficient;
   for (int j = 0; j <= n; ++j) {
     coefficient = p[j];
     unsigned long binomial = 1;
     for (int i = j - 1; i >= 0; --i) {
       binomial = binomial * static_cast<unsigned long>(n - i) / static_cast<unsigned long>(j - i);
-      mpz_addmul_ui(coefficient.get_mpz_t(), p[i].get_mpz_t(), binomial);
+      coefficient += p[i] * binomial;
     }
-    const int s = sgn(coefficient);
+    const int s = coefficient.sign();
     if (s == 0) continue;
     if (result.sign != 0 && s != result.sign) ++result.variations;
     result.sign = s;

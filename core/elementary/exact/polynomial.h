@@ -1,13 +1,14 @@
 #pragma once
 
 #include <array>
-#include <gmpxx.h>
+
+#include "core/elementary/exact/integer.h"
 
 namespace cscd::exact {
 
 // The number numerator / 2^exponent.
 struct Dyadic {
-  mpz_class numerator;
+  Integer numerator;
   unsigned long exponent = 0;
 };
 Dyadic dyadic(double x);                        // exact, for any finite x
@@ -25,13 +26,13 @@ class Polynomial {
   static constexpr int kMaxDegree = 6;
 
   Polynomial() = default;  // zero
-  explicit Polynomial(mpz_class constant);
-  Polynomial(mpz_class constant, mpz_class slope);
-  Polynomial(mpz_class c0, mpz_class c1, mpz_class c2, mpz_class c3);
+  explicit Polynomial(Integer constant);
+  Polynomial(Integer constant, Integer slope);
+  Polynomial(Integer c0, Integer c1, Integer c2, Integer c3);
 
   int degree() const { return degree_; }  // -1 for zero
   bool is_zero() const { return degree_ < 0; }
-  const mpz_class& operator[](int power) const { return c_[static_cast<std::size_t>(power)]; }
+  const Integer& operator[](int power) const { return c_[static_cast<std::size_t>(power)]; }
 
   friend bool operator==(const Polynomial& a, const Polynomial& b) { return a.c_ == b.c_; }
   friend Polynomial operator+(const Polynomial& a, const Polynomial& b);
@@ -52,10 +53,10 @@ class Polynomial {
   friend Polynomial exact_quotient(const Polynomial& p, const Polynomial& divisor);
 
  private:
-  mpz_class& at(int power) { return c_[static_cast<std::size_t>(power)]; }
+  Integer& at(int power) { return c_[static_cast<std::size_t>(power)]; }
   void trim();  // finds the degree from the coefficients
 
-  std::array<mpz_class, kMaxDegree + 1> c_;
+  std::array<Integer, kMaxDegree + 1> c_;
   int degree_ = -1;
 };
 

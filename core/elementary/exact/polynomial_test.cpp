@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "core/elementary/exact/algebraic.h"
@@ -13,8 +14,8 @@ namespace {
 
 // The product of (d t - n) over the fractions n / d.
 Polynomial with_roots(const std::vector<std::pair<long, long>>& fractions) {
-  Polynomial product(mpz_class(1));
-  for (const auto& [n, d] : fractions) product = product * Polynomial(mpz_class(-n), mpz_class(d));
+  Polynomial product(Integer(1));
+  for (const auto& [n, d] : fractions) product = product * Polynomial(Integer(-n), Integer(d));
   return product;
 }
 
@@ -22,10 +23,40 @@ Polynomial cubic(long c0, long c1, long c2, long c3) {
   return Polynomial(c0, c1, c2, c3);
 }
 
+mpz_class gmp(const Integer& x) {
+  return mpz_class(x.str());
+}
+
+// GMP computes the same. Mutation: `truncated` rounds to the nearest double.
+TEST(Integer, AgreesWithGmp) {
+  std::mt19937_64 random(3);
+  const auto any = [&] {
+    Integer x = 0;
+    for (auto words = random() % 20; words > 0; --words) x = (x << 64) + random();
+    return (random() % 2 != 0 ? Integer(-x) : x) << (random() % 70);
+  };
+  for (int i = 0; i < 3'000; ++i) {
+    const Integer a = any(), b = any();
+    const mpz_class x = gmp(a), y = gmp(b);
+    ASSERT_EQ(gmp(a + b), x + y);
+    ASSERT_EQ(gmp(a - b), x - y);
+    ASSERT_EQ(gmp(a * b), x * y);
+    ASSERT_EQ(gmp(gcd(a, b)), gcd(x, y));
+    ASSERT_EQ(a.compare(b) > 0, cmp(x, y) > 0);
+    ASSERT_EQ(a.sign(), sgn(x));
+    if (a == 0) continue;
+    ASSERT_EQ(a * b / a, b);
+    ASSERT_EQ(trailing_zeros(a), mpz_scan1(x.get_mpz_t(), 0));
+    long exponent = 0, expected = 0;
+    ASSERT_EQ(truncated(a, exponent), mpz_get_d_2exp(&expected, x.get_mpz_t()));
+    ASSERT_EQ(exponent, expected);
+  }
+}
+
 TEST(Dyadic, HoldsEveryKindOfDoubleExactly) {
   for (const double x : {0.0, 1.0, -1.5, 0.1, 1e150, -1e-300, 0x1p-1074, 0x1.fffffffffffffp+1023}) {
     const Dyadic exact = dyadic(x);
-    EXPECT_EQ(mpq_class(exact.numerator, mpz_class(1) << exact.exponent), mpq_class(x)) << x;
+    EXPECT_EQ(mpq_class(gmp(exact.numerator), mpz_class(1) << exact.exponent), mpq_class(x)) << x;
   }
 }
 
@@ -41,12 +72,12 @@ TEST(DyadicDeathTest, AssertsThatTheNumberIsFinite) {
 TEST(Dyadic, ComparesAndHalvesAcrossExponents) {
   EXPECT_LT(compare(dyadic(0.25), dyadic(0.5)), 0);
   EXPECT_GT(compare(dyadic(3.0), dyadic(0x1p-1074)), 0);
-  EXPECT_EQ(compare(dyadic(0.75), Dyadic{mpz_class(12), 4}), 0);
+  EXPECT_EQ(compare(dyadic(0.75), Dyadic{Integer(12), 4}), 0);
   EXPECT_EQ(compare(midpoint(dyadic(0.25), dyadic(1)), dyadic(0.625)), 0);
 }
 
 TEST(Dyadic, RoundsOutwardToNeighbours) {
-  const Dyadic third_and_a_bit{(mpz_class(1) << 200) / 3, 200};
+  const Dyadic third_and_a_bit{(Integer(1) << 200) / 3, 200};
   const double below = double_below(third_and_a_bit), above = double_above(third_and_a_bit);
   EXPECT_LT(compare(dyadic(below), third_and_a_bit), 0);
   EXPECT_GT(compare(dyadic(above), third_and_a_bit), 0);
@@ -54,7 +85,7 @@ TEST(Dyadic, RoundsOutwardToNeighbours) {
   EXPECT_EQ(double_below(dyadic(0.1)), 0.1);
   EXPECT_EQ(double_above(dyadic(0.1)), 0.1);
   // The processor would round three quarters of the smallest subnormal up.
-  const Dyadic tiny{mpz_class(3), 1076};
+  const Dyadic tiny{Integer(3), 1076};
   EXPECT_EQ(double_below(tiny), 0);
   EXPECT_EQ(double_above(tiny), 0x1p-1074);
 }
@@ -68,7 +99,7 @@ TEST(Polynomial, KnowsItsDegree) {
 }
 
 TEST(Polynomial, MultipliesAndDividesBack) {
-  const Polynomial a(mpz_class(-2), mpz_class(3)), b = cubic(5, -7, 11, 0), product = a * b;
+  const Polynomial a(Integer(-2), Integer(3)), b = cubic(5, -7, 11, 0), product = a * b;
   EXPECT_EQ(product, cubic(-10, 29, -43, 33));
   EXPECT_EQ(exact_quotient(product, a), b);
   EXPECT_EQ(exact_quotient(product, b), a);
@@ -85,7 +116,7 @@ TEST(Polynomial, StretchesAnIntervalOntoTheUnitInterval) {
     const mpq_class t = mpq_class(0.375) + mpq_class(s) * mpq_class(0.25);
     const mpq_class direct = 3 - 5 * t + 7 * t * t - 2 * t * t * t;
     const mpq_class u(s);
-    EXPECT_EQ(q[0] + q[1] * u + q[2] * u * u + q[3] * u * u * u, 512 * direct) << s;
+    EXPECT_EQ(gmp(q[0]) + gmp(q[1]) * u + gmp(q[2]) * u * u + gmp(q[3]) * u * u * u, 512 * direct) << s;
   }
 }
 
@@ -156,17 +187,17 @@ TEST(Roots, CountAtBothEndsAndWhenMultiple) {
 TEST(Roots, OutsideTheUnitIntervalAreNotReported) {
   EXPECT_TRUE(root_times(with_roots({{-1, 3}, {4, 3}, {-5, 1}})).empty());
   EXPECT_TRUE(root_times(cubic(1, 0, 1, 0)).empty());
-  EXPECT_TRUE(root_times(Polynomial(mpz_class(7))).empty());
-  EXPECT_TRUE(root_times(Polynomial(mpz_class(1) << 2000, mpz_class(1))).empty());
+  EXPECT_TRUE(root_times(Polynomial(Integer(7))).empty());
+  EXPECT_TRUE(root_times(Polynomial(Integer(1) << 2000, Integer(1))).empty());
   // 4 t^2 - 4 t + 1, raised by one part in 2^200, is a near miss that only exact arithmetic sees.
-  const mpz_class big = mpz_class(1) << 200;
+  const Integer big = Integer(1) << 200;
   EXPECT_TRUE(root_times(Polynomial(big + 1, -4 * big, 4 * big, 0)).empty());
   EXPECT_EQ(root_times(Polynomial(big - 1, -4 * big, 4 * big, 0)).size(), 2u);
 }
 
 TEST(Roots, MuchCloserThanDoublesAreToldApart) {
   // The polynomial is (2^100 t - a)(2^100 t - a - 1), with a / 2^100 near one third.
-  const mpz_class scale = mpz_class(1) << 100, a = scale / 3;
+  const Integer scale = Integer(1) << 100, a = scale / 3;
   const Polynomial first(-a, scale), second(-a - 1, scale);
   auto roots = roots_in_unit_interval(first * second);
   ASSERT_EQ(roots.size(), 2u);
@@ -180,11 +211,11 @@ TEST(Roots, MuchCloserThanDoublesAreToldApart) {
 
 TEST(Roots, TinyOnesAreEnclosedByNeighbouringDoubles) {
   // The roots are t = 1 / (3 * 2^900) and t = 1 / 2^1100, which is below every positive double.
-  const auto small = root_times(Polynomial(mpz_class(-1), 3 * (mpz_class(1) << 900)));
+  const auto small = root_times(Polynomial(Integer(-1), 3 * (Integer(1) << 900)));
   ASSERT_EQ(small.size(), 1u);
   EXPECT_GT(small[0].lo, 0);
   EXPECT_EQ(small[0].hi, std::nextafter(small[0].lo, 1));
-  const auto least = root_times(Polynomial(mpz_class(-1), mpz_class(1) << 1100));
+  const auto least = root_times(Polynomial(Integer(-1), Integer(1) << 1100));
   ASSERT_EQ(least.size(), 1u);
   EXPECT_EQ(least[0].lo, 0);
   EXPECT_EQ(least[0].hi, 0x1p-1074);
@@ -208,7 +239,7 @@ TEST(Roots, OfAllSmallCubicsMatchSturmSequences) {
             // Compare the signs of other polynomials at the root. Some of these share the root.
             for (const auto& q :
                  {cubic(-1, 1, 1, 0), cubic(-1, 2, 0, 0), cubic(1, -2, -1, 1), cubic(c0, c1, 0, 0)}) {
-              const brute::Poly same{mpq_class(q[0]), mpq_class(q[1]), mpq_class(q[2]), mpq_class(q[3])};
+              const brute::Poly same{gmp(q[0]), gmp(q[1]), gmp(q[2]), gmp(q[3])};
               EXPECT_EQ(roots[i].sign_of(q), expected[i].sign_of(brute::trimmed(same)));
             }
           }

@@ -116,7 +116,7 @@ bool segment_apart_in_projection(const Vec3& p, const Vec3& q, const Vec3& a, co
 
 // The side of the plane a, b, c on which p lies, from exact integers.
 int exact_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
-  return sgn(exact::coplanarity(exact::constant_points({p, a, b, c}))[0]);
+  return exact::coplanarity(exact::constant_points({p, a, b, c}))[0].sign();
 }
 
 // The side of the plane a, b, c on which p lies, exactly.

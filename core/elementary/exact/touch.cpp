@@ -33,7 +33,7 @@ Scaled scaled(double x) {
 
 // Multiplies all values by one power of two that makes them integers.
 template <std::size_t count>
-std::array<mpz_class, count> to_integers(const std::array<double, count>& values) {
+std::array<Integer, count> to_integers(const std::array<double, count>& values) {
   std::array<Scaled, count> parts;
   int smallest = 0;
   bool found = false;
@@ -43,7 +43,7 @@ std::array<mpz_class, count> to_integers(const std::array<double, count>& values
     smallest = found ? std::min(smallest, parts[i].exponent) : parts[i].exponent;
     found = true;
   }
-  std::array<mpz_class, count> integers;
+  std::array<Integer, count> integers;
   for (std::size_t i = 0; i < count; ++i) {
     integers[i] = parts[i].mantissa;
     if (parts[i].mantissa != 0) integers[i] <<= static_cast<unsigned long>(parts[i].exponent - smallest);
@@ -101,11 +101,11 @@ PointsAndLength linear_points(const std::array<MovingPoint, 4>& points, double l
       values[6 * i + 3 + k] = points[i].end[static_cast<Eigen::Index>(k)];
     }
   values[24] = length;
-  const std::array<mpz_class, 25> integers = to_integers(values);
+  const std::array<Integer, 25> integers = to_integers(values);
   PointsAndLength result;
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
-      const mpz_class &start = integers[6 * i + k], &end = integers[6 * i + 3 + k];
+      const Integer &start = integers[6 * i + k], &end = integers[6 * i + 3 + k];
       result.points[i][k] = Polynomial(start, end - start);
     }
   result.length = integers[24];
@@ -116,7 +116,7 @@ FourPoints constant_points(const std::array<Vec3, 4>& points) {
   std::array<double, 12> values;
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t k = 0; k < 3; ++k) values[3 * i + k] = points[i][static_cast<Eigen::Index>(k)];
-  const std::array<mpz_class, 12> integers = to_integers(values);
+  const std::array<Integer, 12> integers = to_integers(values);
   FourPoints result;
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t k = 0; k < 3; ++k) result[i][k] = Polynomial(integers[3 * i + k]);

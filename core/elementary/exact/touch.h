@@ -21,7 +21,7 @@ FourPoints linear_points(const std::array<MovingPoint, 4>& points);
 // The same with a length that takes part in the scaling and comes back scaled.
 struct PointsAndLength {
   FourPoints points;
-  mpz_class length;
+  Integer length;
 };
 PointsAndLength linear_points(const std::array<MovingPoint, 4>& points, double length);
 FourPoints constant_points(const std::array<Vec3, 4>& points);

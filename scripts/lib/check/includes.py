@@ -32,6 +32,7 @@ OUTSIDE = {
     "tbb/": ["core/base"], "oneapi/": ["core/base"],
     "tiny_gltf": ["scenes/import/gltf"], "meshoptimizer": ["scenes/import/gltf"], "draco/": ["scenes/import/gltf"],
     "gtest/": None,  # in tests alone
+    "boost/multiprecision": ["core/elementary/exact"],
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<([^>]+)>)', re.M)
 

@@ -21,7 +21,7 @@ digest=$root/library/dispatch/digest.cpp
 link() {  # OUT LIBRARY...
   local out=$1
   shift
-  g++ -std=c++20 -O2 -I "$root/library/include" -isystem /usr/include/eigen3 "$digest" "$@" -ltbb -lgmpxx -lgmp -o "$out"
+  g++ -std=c++20 -O2 -I "$root/library/include" -isystem /usr/include/eigen3 "$digest" "$@" -ltbb -o "$out"
 }
 link "$all/digest" "$all/libcscd.a"
 link "$all/digest-shared" "$all/libcscd.so" -Wl,-rpath,"$all"

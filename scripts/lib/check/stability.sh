@@ -55,7 +55,7 @@ for variant in "${variants[@]}"; do
       -c "$name.cpp" -o "$key-$name.o"
     objects+=("$key-$name.o")
   done
-  "${words[@]}" "${objects[@]}" -lgmpxx -lgmp -ltbb -o "digest-$key"
+  "${words[@]}" "${objects[@]}" -ltbb -o "digest-$key"
   "./digest-$key" queries/*.csv > "$key.txt"
   first=${first:-$key}
   if cmp -s "$first.txt" "$key.txt"; then

@@ -21,7 +21,7 @@ say "build"
 tests=(core_base core_fast_prepare core_fast_classify core_fast library bench_harness)
 build $build sanitize_threads gcc cscd cscd_static "${tests[@]/%/_test}"
 g++ -std=c++20 -O1 -g -fsanitize=thread -I library/include -isystem /usr/include/eigen3 library/dispatch/digest.cpp \
-  $build/libcscd.a -ltbb -lgmpxx -lgmp -o $build/digest
+  $build/libcscd.a -ltbb -o $build/digest
 
 # Without this the script could pass because nothing was watched.
 say "a planted race"
@@ -33,7 +33,7 @@ int main() {
   return sum < 0;
 }
 TEXT
-g++ -std=c++20 -O1 -g -fsanitize=thread -I . -isystem /usr/include/eigen3 $build/race.cpp core/base/thread_pool.cpp -ltbb \
+g++ -std=c++20 -O1 -g -fsanitize=thread -I . -isystem /usr/include/eigen3 $build/race.cpp -DCSCD_TBB core/base/thread_pool.cpp -ltbb \
   -o $build/race
 status=0
 $build/race 2>/dev/null || status=$?
