@@ -32,7 +32,7 @@ int GenericSides::side(VertexId a, VertexId b, VertexId c, VertexId p) {
   const exact::Polynomial volume =
       exact::coplanarity(exact::linear_points({moved(p), moved(a), moved(b), moved(c)}));
   for (int power = 0; power <= volume.degree(); ++power)
-    if (const int sign = sgn(volume[power]); sign != 0) {
+    if (const int sign = volume[power].sign(); sign != 0) {
       degenerate_ += power > 0;
       return sign;
     }

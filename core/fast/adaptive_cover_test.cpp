@@ -30,7 +30,7 @@ class Interval {
     local_.update(motion);
     certificates_.start(local_);
     for (std::size_t p = 0; p < cut_.tree.patches.size(); ++p)
-      certificates_.look(p, load(local_.records(), cut_.tree.patches[p].vertex));
+      certificates_.classify(p, load(local_.records(), cut_.tree.patches[p].vertex));
     certificates_.finish();
   }
   void forget() {

@@ -42,14 +42,14 @@ set(CSCD_BRIEF_ROOMS "^bench/(tables|compare|benchmark|statistics|records|inputs
 
 # A room is one folder: every x.cpp in it is the room's library, every x_test.cpp the room's test program.
 #
-#   cscd_room(core/mesh USES core/base LINK Eigen3::Eigen TEST_USES scenes TEST_LINK gmp)
+#   cscd_room(core/mesh USES core/base LINK Eigen3::Eigen TEST_USES scenes)
 #
-# USES names the rooms below it, LINK outside libraries, TEST_USES and TEST_LINK those that only its tests may see.
+# USES names the rooms below it, LINK outside libraries, TEST_USES the rooms that only its tests may see.
 # IF names a variable: where it is false, for want of an outside library, the room stays empty; where it is true, those
 # who use the room see a macro, CSCD_BASELINES_FCL for baselines/fcl.
 # JSON says that the room links nlohmann's library, and that nearly all of its files include <nlohmann/json.hpp>.
 function(cscd_room path)
-  cmake_parse_arguments(ROOM "JSON" "IF" "USES;LINK;TEST_USES;TEST_LINK" ${ARGN})
+  cmake_parse_arguments(ROOM "JSON" "IF" "USES;LINK;TEST_USES" ${ARGN})
   set(parsed ${CSCD_PARSED})
   if(ROOM_JSON)
     list(APPEND ROOM_LINK nlohmann_json::nlohmann_json)
@@ -96,7 +96,7 @@ function(cscd_room path)
 
   if(BUILD_TESTING AND tests)
     add_executable(${room}_test ${tests})
-    target_link_libraries(${room}_test PRIVATE ${room} ${test_below} ${ROOM_TEST_LINK} GTest::gtest_main cscd_flags)
+    target_link_libraries(${room}_test PRIVATE ${room} ${test_below} ${GMPXX_LIBRARY} ${GMP_LIBRARY} GTest::gtest_main cscd_flags)
     # A test often runs once for each time that it is compiled: optimising it further takes longer than it saves.
     target_compile_options(${room}_test PRIVATE $<$<CONFIG:Release>:-O1>)
     cscd_compile_together(${room}_test)

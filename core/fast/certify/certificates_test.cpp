@@ -132,13 +132,13 @@ TEST(Certificates, ANodeIsSkippedOnlyWhereAllPairsBelowAre) {
 // Mutations: certificates of covers that are no longer used stay; orientation_passes counts all covers.
 TEST(Certificates, CoversThatAreNotUsedDropNothing) {
   CertifiedBody scene(0.04, 3, 1, false, CertifiedBody::Bones::sixths);
-  const std::size_t looks = scene.certificates.orientation_passes();
+  const std::size_t passes = scene.certificates.orientation_passes();
   EXPECT_EQ(
       scene.certificates.counts().clusters,
       scene.covers[0].observers.size() + scene.covers[1].observers.size() + scene.covers[2].observers.size());
   scene.certificates.use_covers(1);
   EXPECT_EQ(scene.certificates.orientation_passes(), scene.tree.patches.size());
-  EXPECT_GT(looks, scene.tree.patches.size() * 3 / 2);
+  EXPECT_GT(passes, scene.tree.patches.size() * 3 / 2);
   EXPECT_EQ(scene.certificates.counts().clusters, scene.covers[0].observers.size());
   scene.certify();
   std::size_t dropped = 0;
@@ -290,10 +290,10 @@ class FreshBesideUsed {
   // `mirrored`, [patches], marks patches that are seen from the other side.
   void take(const Motion& motion, const std::vector<bool>& mirrored, std::size_t covers) {
     scene_.local.update(motion);
-    look(scene_.certificates, mirrored);
+    classify(scene_.certificates, mirrored);
     Certificates fresh(scene_.mesh, scene_.tree, scene_.covers);
     fresh.use_covers(covers);
-    look(fresh, mirrored);
+    classify(fresh, mirrored);
     ASSERT_NO_FATAL_FAILURE(expect_same(scene_, scene_.certificates, fresh));
     const RadialCounts &found = scene_.certificates.counts(), &expected = fresh.counts();
     ASSERT_EQ(found.positive, expected.positive);
@@ -355,16 +355,16 @@ TEST(Certificates, SayAfterOtherIntervalsWhatFreshOnesSay) {
 // certified stays when the other takes its place.
 TEST(Certificates, SayBySignsAndByCapsWhatFreshOnesSay) {
   CertifiedBody scene(0, 0, 1);
-  const auto look = [&](Certificates& certificates, bool all) {
+  const auto classify = [&](Certificates& certificates, bool all) {
     certificates.use_contour_test(all);
     classify_all(certificates, scene.tree, scene.local);
   };
   Certificates used = scene.with_caps();
   std::size_t different = 0;
   for (const bool all : {true, false, false, true, false}) {
-    look(used, all);
+    classify(used, all);
     Certificates fresh = scene.with_caps(), other = scene.with_caps();
-    look(fresh, all), look(other, !all);
+    classify(fresh, all), classify(other, !all);
     ASSERT_NO_FATAL_FAILURE(expect_same(scene, used, fresh));
     for (std::size_t p = 0; p < scene.tree.patches.size(); ++p)
       for (std::size_t q = 0; q < scene.tree.patches.size(); ++q)

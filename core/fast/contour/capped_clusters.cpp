@@ -94,13 +94,13 @@ void CappedClusters::start(const LocalPositions& positions, std::span<const View
                            const ThreadPool& pool) {
   positions_ = &positions;
   viewpoints_ = viewpoints;
-  cap_orientations_.resize(pool.ranges_of(state_.size(), kRange));
+  at_cap_.resize(pool.ranges_of(state_.size(), kRange));
   pool.ranges(state_.size(), kRange, [&](std::size_t first, std::size_t last, std::size_t part) {
-    for (std::size_t i = first; i < last; ++i) start(i, cap_orientations_[part]);
+    for (std::size_t i = first; i < last; ++i) start(i, at_cap_[part]);
   });
 }
 
-void CappedClusters::start(std::size_t cluster, CapOrientation& orientation) {
+void CappedClusters::start(std::size_t cluster, CapOrientation& at_cap) {
   State& state = state_[cluster];
   state.ray.emplace(ray_through(cluster, targets_[cluster].front()));
   state.rays = 1;
@@ -108,7 +108,7 @@ void CappedClusters::start(std::size_t cluster, CapOrientation& orientation) {
   state.ray_decides = state.cones_known = true;
   state.has_other_ray = false;
   state.uncertain.clear();
-  for (const Cap& cap : caps_[cluster]) take(cap, cluster, orientation);
+  for (const Cap& cap : caps_[cluster]) take(cap, cluster, at_cap);
 }
 
 Ray CappedClusters::ray_through(std::size_t cluster, const Triangle& target) const {
@@ -119,10 +119,10 @@ Ray CappedClusters::ray_through(std::size_t cluster, const Triangle& target) con
   return {viewpoints_[cluster], middle, positions_->error()};
 }
 
-void CappedClusters::classify(const Cap& cap, std::size_t cluster, CapOrientation& orientation) const {
+void CappedClusters::classify(const Cap& cap, std::size_t cluster, CapOrientation& at_cap) const {
   const Viewpoint &from = viewpoints_[cluster], towards = placed(cap.towards, positions_->records());
-  orientation.loop.clear();
-  orientation.positive.clear();
+  at_cap.loop.clear();
+  at_cap.positive.clear();
   for (const Patch& fan : cap.fans) {
     PatchLanes lanes = load(positions_->records(), fan.vertex);
     for (int end = 0; end < 2; ++end)
@@ -131,19 +131,19 @@ void CappedClusters::classify(const Cap& cap, std::size_t cluster, CapOrientatio
         lanes.at[end][i][kLanes16 - 1] = apex;
       }
     const Signs signs = orientation(lanes, fan, from, positions_->error());
-    orientation.positive.push_back(signs.positive & fan.lanes);
-    orientation.loop.push_back(lanes);
+    at_cap.positive.push_back(signs.positive & fan.lanes);
+    at_cap.loop.push_back(lanes);
   }
 }
 
-void CappedClusters::take(const Cap& cap, std::size_t cluster, CapOrientation& orientation) {
-  classify(cap, cluster, orientation);
+void CappedClusters::take(const Cap& cap, std::size_t cluster, CapOrientation& at_cap) {
+  classify(cap, cluster, at_cap);
   State& state = state_[cluster];
   for (std::size_t i = 0; i < cap.fans.size(); ++i) {
     const Patch& fan = cap.fans[i];
-    const PatchLanes& loop = orientation.loop[i];
-    state.count(fan, loop, orientation.positive[i]);
-    const unsigned uncertain = fan.lanes & ~static_cast<unsigned>(orientation.positive[i]);
+    const PatchLanes& loop = at_cap.loop[i];
+    state.count(fan, loop, at_cap.positive[i]);
+    const unsigned uncertain = fan.lanes & ~static_cast<unsigned>(at_cap.positive[i]);
     const unsigned at_apex = uncertain & lanes_at_apex(fan);
     if ((uncertain & ~at_apex) != 0)
       add_cones(uncertain & ~at_apex, cones_of(loop, fan, viewpoints_[cluster], positions_->error()), state);
@@ -221,11 +221,11 @@ bool CappedClusters::choose_other_rays() {
       any = state.ray_decides = state.has_other_ray = true;
     }
     if (!state.has_other_ray) continue;
-    CapOrientation& orientation = cap_orientations_.front();
+    CapOrientation& at_cap = at_cap_.front();
     for (const Cap& cap : caps_[i]) {
-      classify(cap, i, orientation);
+      classify(cap, i, at_cap);
       for (std::size_t f = 0; f < cap.fans.size(); ++f)
-        state.count(cap.fans[f], orientation.loop[f], orientation.positive[f]);
+        state.count(cap.fans[f], at_cap.loop[f], at_cap.positive[f]);
     }
   }
   return any;

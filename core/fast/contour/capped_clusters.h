@@ -89,9 +89,9 @@ class CappedClusters {
     std::vector<Mask16> positive;  // the positive triangles
   };
   Ray ray_through(std::size_t cluster, const Triangle& target) const;
-  void start(std::size_t cluster, CapOrientation& orientation);
-  void classify(const Cap& cap, std::size_t cluster, CapOrientation& orientation) const;
-  void take(const Cap& cap, std::size_t cluster, CapOrientation& orientation);
+  void start(std::size_t cluster, CapOrientation& at_cap);
+  void classify(const Cap& cap, std::size_t cluster, CapOrientation& at_cap) const;
+  void take(const Cap& cap, std::size_t cluster, CapOrientation& at_cap);
   void take_in_slices(const Patch& fan, const PatchLanes& lanes, unsigned triangles, std::size_t cluster);
   void add_cones(unsigned triangles, const Cones& cones, State& state);
   void take(const Patch& triangles, const PatchLanes& lanes, Mask16 positive, std::size_t cluster);
@@ -101,8 +101,7 @@ class CappedClusters {
   // [clusters]: the triangles that a ray of the cluster may go through, the best one first
   std::vector<std::vector<Triangle>> targets_;
   std::vector<State> state_;
-  std::vector<CapOrientation>
-      cap_orientations_;  // [ranges of clusters]: room for the cap that a thread looks at
+  std::vector<CapOrientation> at_cap_;  // [ranges of clusters]: room for the cap that a thread classifies
   const LocalPositions* positions_ = nullptr;
   std::span<const Viewpoint> viewpoints_;
 };

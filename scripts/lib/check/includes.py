@@ -126,7 +126,7 @@ def violations(root):
 
 CLEAN_CMAKE = """
 cscd_room(core/base LINK Eigen3::Eigen)
-cscd_room(core/mesh USES core/base TEST_LINK ${GMP_LIBRARY})
+cscd_room(core/mesh USES core/base)
 cscd_room(core/fast USES core/mesh)
 cscd_room(scenes/clip USES core/mesh)
 cscd_room(baselines USES core/mesh TEST_USES scenes/clip)
