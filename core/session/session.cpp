@@ -169,7 +169,7 @@ void Session::ask(PreparedStrategy& asked, const Motion& motion, const Rig::Inte
   step.time_alone = sought_ == Sought::time;
   out.strategy = asked.strategy;
   if (start_known_) {
-    // Two looks find all contacts of a step from an embedded start, the second one only where something
+    // Two passes find all contacts of a step from an embedded start, the second one only where something
     // touches. After a step in which something did, that is likely again, and one pass for all is quicker.
     // For the first contact alone there is one pass in either case.
     const bool clear = !options_.ignore_starts && starts_.clear() && can_follow();
@@ -233,6 +233,9 @@ void Session::begin(const Motion& motion) {
   require_finite(motion.end(), "end positions");
 }
 
+// A step asks the known starts four times, each time about what the last answer has changed: whether it
+// begins in a known pose; if not, whether a way leads there, which decides who answers; what the detector saw
+// at the start; and, once all contacts are known, what they prove of the end.
 void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer& out, Sought sought) {
   sought_ = sought;
   const Stopwatch whole;
