@@ -60,7 +60,7 @@ GROWTH = {"scale": "Triangles, steps, bones, threads and contacts", "scale-large
 
 def words():
     """What words mean, as `cscd list` explains them."""
-    glossary = read_json(ROOT / "bench" / "cli" / "output" / "glossary.json")
+    glossary = read_json(ROOT / "bench" / "output" / "glossary.json")
     return "\n".join(table(["word", "means"], [[f"`{word['name']}`" if "_" in word["name"] else word["name"], word["means"]]
                                               for word in glossary["words"]], text_columns=2)) + "\n"
 
