@@ -36,47 +36,14 @@ def shaded(positions, triangles, colours, view):
     return colours * bright[:, None]
 
 
-def shared_edges(triangles):
-    """Edges that two triangles share, as pairs of vertices, and the numbers of both triangles."""
-    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    owner = np.repeat(np.arange(len(triangles)), 3)
-    order = np.lexsort((edges[:, 1], edges[:, 0]))
-    edges, owner = edges[order], owner[order]
-    twice = np.flatnonzero(np.all(edges[1:] == edges[:-1], axis=1))
-    return edges[twice], owner[twice], owner[twice + 1]
-
-
-def border_edges(positions, triangles, label, towards):
-    """Edges between triangles with different labels, as positions of their ends, where both triangles face the viewer."""
-    edges, a, b = shared_edges(triangles)
-    facing = normals_of(positions, triangles) @ towards > 0
-    return positions[edges[(label[a] != label[b]) & facing[a] & facing[b]]]
-
-
-def paint(axes, positions, triangles, colours, view, through=None, label=None, border=0.5):
-    """Paints the triangles that face the viewer, and returns width and height of the surface on the page. `through`, a mask of
-    triangles: these are painted last and wherever they face, as if one saw them through the surface. `label`, a number a
-    triangle: where it changes, an edge is drawn in black, `border` points wide."""
+def paint(axes, positions, triangles, colours, view):
+    """Paints the triangles that face the viewer."""
     right, up, towards = view
-    corners = positions[triangles]
-    drawn = np.arange(len(triangles))[normals_of(positions, triangles) @ towards > 0]
-    if through is not None:
-        drawn = np.concatenate([drawn[~through[drawn]], np.flatnonzero(through)])
-    polygons, fill, widths = corners[drawn], colours[drawn], np.full(len(drawn), 0.15)
-    depth = polygons.mean(axis=1) @ towards
-    if through is not None:
-        depth[through[drawn]] += 1e3 * np.ptp(corners @ towards)
-    if label is not None:  # edges are painted as triangles without area, a little nearer to the viewer
-        ends = border_edges(positions, triangles, label, towards)
-        nearer = np.ptp(corners @ towards) / 100
-        polygons = np.concatenate([polygons, ends[:, [0, 1, 1]]])
-        depth = np.concatenate([depth, ends.mean(axis=1) @ towards + nearer])
-        fill = np.concatenate([fill, np.zeros((len(ends), 3))])
-        widths = np.concatenate([widths, np.full(len(ends), border)])
-    order = np.argsort(depth, kind="stable")
+    drawn = normals_of(positions, triangles) @ towards > 0
+    polygons, fill = positions[triangles][drawn], colours[drawn]
+    order = np.argsort(polygons.mean(axis=1) @ towards, kind="stable")
     flat = np.stack([polygons @ right, polygons @ up], axis=2)
-    axes.add_collection(PolyCollection(flat[order], facecolors=fill[order], edgecolors=fill[order], linewidths=widths[order]))
+    axes.add_collection(PolyCollection(flat[order], facecolors=fill[order], edgecolors=fill[order], linewidths=0.15))
     axes.set_aspect("equal")
     axes.autoscale_view()
     axes.axis("off")
-    return np.ptp(corners @ right), np.ptp(corners @ up)
