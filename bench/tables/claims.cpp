@@ -6,6 +6,7 @@
 #include "bench/output/markdown.h"
 #include "bench/tables/filled_tables.h"
 #include "bench/tables/run_times.h"
+#include "core/base/number_text.h"
 #include "scenes/base/joined.h"
 
 namespace cscd::bench {
@@ -18,11 +19,11 @@ bool within(double value, const ordered_json& expect) {
          (!expect.contains("most") || value <= expect["most"].get<double>());
 }
 
-std::string text_of(const ordered_json& expect) {
+std::string bounds_text(const ordered_json& expect) {
   std::string out;
-  if (expect.contains("least")) out += "at least " + number_text(expect["least"]);
+  if (expect.contains("least")) out += "at least " + exact_text(expect["least"]);
   if (expect.contains("most"))
-    out += (out.empty() ? "at most " : " and at most ") + number_text(expect["most"]);
+    out += (out.empty() ? "at most " : " and at most ") + exact_text(expect["most"]);
   return out;
 }
 
@@ -122,7 +123,7 @@ ClaimResult judge(const ordered_json& claim, const ordered_json& stage_rows,
     result.not_measured_because = claim.at("not_measured_because");
     return result;
   }
-  result.expectation = text_of(claim.at("expect"));
+  result.expectation = bounds_text(claim.at("expect"));
   for (const std::string scene : claim.at("scenes")) {
     const Record* const today = record_of(records, scene, Pipeline::vectorised);
     if (today == nullptr && record_of(records, scene, Pipeline::published) == nullptr) continue;
@@ -152,12 +153,12 @@ ClaimResult judge(const ordered_json& claim, const ordered_json& stage_rows,
   return result;
 }
 
-std::string text_of(const Measured& measured) {
-  return measured.value ? number_text(*measured.value) : measured.reason;
+std::string figure_or_reason(const Measured& measured) {
+  return measured.value ? figure_text(*measured.value) : measured.reason;
 }
 
 std::string figure(const Evidence& evidence) {
-  const std::string text = text_of(evidence.measured);
+  const std::string text = figure_or_reason(evidence.measured);
   return evidence.holds || !evidence.measured.value ? text : "**" + text + "**";
 }
 
@@ -189,7 +190,7 @@ void add_rows(const std::string& title, std::span<const Evidence> evidence, cons
       beside(1, title + ", today");
   for (const Evidence* e : of_title) {
     held.push_back(figure(*e));
-    beside.push_back(text_of(e->today.value_or(no_record_in(Pipeline::vectorised))));
+    beside.push_back(figure_or_reason(e->today.value_or(no_record_in(Pipeline::vectorised))));
   }
   rows.push_back(std::move(held));
   if (two) rows.push_back(std::move(beside));
@@ -209,9 +210,11 @@ std::string stages_markdown(const ClaimResult& claim) {
         row.push_back("");
         continue;
       }
-      const auto text = [](const std::optional<Measured>& m) { return m ? text_of(*m) : std::string("–"); };
+      const auto text = [](const std::optional<Measured>& m) {
+        return m ? figure_or_reason(*m) : std::string("–");
+      };
       row.push_back(text(place->published) + ", " + text(place->today) +
-                    (place->paper ? " (" + number_text(*place->paper) + ")" : ""));
+                    (place->paper ? " (" + figure_text(*place->paper) + ")" : ""));
     }
   }
   return markdown_table(head, rows);
@@ -268,10 +271,12 @@ ordered_json claims_json(std::span<const ClaimResult> claims) {
     for (const Evidence& e : claim.evidence) {
       ordered_json& row = evidence.emplace_back(ordered_json{{"scene", e.scene}, {"title", e.title}});
       if (e.measured.value)
-        row.update({{"measured", *e.measured.value}, {"holds", e.holds}});
+        row.update(
+            {{"measured", *e.measured.value}, {"text", figure_text(*e.measured.value)}, {"holds", e.holds}});
       else
         row["reason"] = e.measured.reason;
-      if (e.today && e.today->value) row["today"] = *e.today->value;
+      if (e.today && e.today->value)
+        row.update({{"today", *e.today->value}, {"today_text", figure_text(*e.today->value)}});
     }
     out.push_back({{"id", claim.id},
                    {"quote", claim.quote},

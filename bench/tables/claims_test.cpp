@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/output/data.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
@@ -149,7 +150,7 @@ TEST(Claims, ShippedOnesAreComplete) {
     const std::string source = claim["quote"].get<std::string>() + shipped["comment"].get<std::string>();
     const ordered_json expect = claim.value("expect", ordered_json::object());
     for (const auto& [side, bound] : expect.items())
-      EXPECT_TRUE(bound == 1 || source.find(number_text(bound)) != std::string::npos) << claim["id"] << side;
+      EXPECT_TRUE(bound == 1 || source.find(exact_text(bound)) != std::string::npos) << claim["id"] << side;
     const ordered_json scenes = claim.value("scenes", ordered_json::array());
     for (const ordered_json& scene : scenes) EXPECT_TRUE(published["scenes"].contains(scene)) << scene;
   }

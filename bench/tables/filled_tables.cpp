@@ -14,22 +14,30 @@ void add_new(std::vector<std::string>& names, const Name& name) {
   if (std::ranges::find(names, name) == names.end()) names.push_back(name);
 }
 
+ordered_json of_strategy(ordered_json column, const std::string& strategy) {
+  for (auto& [key, value] : column.items())
+    if (value.is_string()) value = replaced(value, "{strategy}", strategy);
+  return column;
+}
+
 std::vector<ordered_json> expanded_columns(const ordered_json& definition, std::span<const Record> records) {
   std::vector<std::string> strategies;
   for (const Record& record : records)
     for (const StrategyRecord& strategy : record.strategies) add_new(strategies, strategy.name);
   std::vector<ordered_json> columns;
   for (const ordered_json& column : definition.at("columns")) {
-    if (!column.value("each_strategy", false)) {
+    if (column.contains("of")) {
+      for (const std::string strategy : column["of"])
+        for (const ordered_json& inner : column.at("columns"))
+          columns.push_back(of_strategy(inner, strategy));
+    } else if (column.value("each_strategy", false)) {
+      for (const std::string& strategy : strategies) {
+        ordered_json own = of_strategy(column, strategy);
+        const bool beside_itself = own.value("over", "") == own.at("strategy").get<std::string>();
+        if (!beside_itself) columns.push_back(std::move(own));
+      }
+    } else {
       columns.push_back(column);
-      continue;
-    }
-    for (const std::string& strategy : strategies) {
-      ordered_json own = column;
-      for (auto& [key, value] : own.items())
-        if (value.is_string()) value = replaced(value, "{strategy}", strategy);
-      const bool beside_itself = own.value("over", "") == own.at("strategy").get<std::string>();
-      if (!beside_itself) columns.push_back(std::move(own));
     }
   }
   return columns;
@@ -38,7 +46,7 @@ std::vector<ordered_json> expanded_columns(const ordered_json& definition, std::
 Cell fill(const ordered_json& column, const ordered_json& published, const std::string& scene,
           std::span<const Record> records, Pipeline pipeline) {
   Cell cell;
-  const Record* record = find_record(records, scene, pipeline);
+  const Record* record = find_record(records, scene + column.value("beside", ""), pipeline);
   if (record == nullptr)
     cell.measured.reason =
         "no record of " + scene + " in the pipeline " + std::string(to_string(pipeline)) + " was given";
@@ -86,7 +94,8 @@ std::vector<Filled> by_pipeline(const ordered_json& definition, const ordered_js
   std::vector<Filled> columns;
   for (const Pipeline pipeline : pipelines_of(records)) {
     Filled& filled = columns.emplace_back();
-    filled.column = {definition.at("key"), definition.at("title"), definition.value("unit", ""), pipeline};
+    filled.column = {definition.value("key", ""), definition.at("title"), definition.value("unit", ""),
+                     pipeline};
     for (const std::string& scene : scenes)
       filled.cells.push_back(fill(definition, published, scene, records, pipeline));
   }
@@ -141,29 +150,40 @@ const Record* find_record(std::span<const Record> records, const std::string& sc
   return record == records.end() ? nullptr : &*record;
 }
 
+bool is_of_kind(const Record& record, const std::string& kind) {
+  if (kind == "truth") return record.verification.truth.has_value();
+  return kind == "all" || record.scene.name.ends_with("_contact") == (kind == "contacts");
+}
+
+FilledTable filled_table(const ordered_json& definition, const ordered_json& published,
+                         std::span<const Record> records, const std::string& kind) {
+  std::vector<std::string> scenes;
+  for (const Record& record : records)
+    if (is_of_kind(record, kind)) add_new(scenes, record.scene.name);
+  FilledTable table{definition.at("id"),
+                    definition.value("title", ""),
+                    {},
+                    {},
+                    definition.value("legend", ""),
+                    definition.value("shape", ordered_json())};
+  for (const std::string& scene : scenes) table.rows.push_back({scene, {}});
+  for (const ordered_json& column : expanded_columns(definition, records)) {
+    if (column.value("only", kind) != kind) continue;
+    for (Filled& filled : by_pipeline(column, published, scenes, records)) {
+      table.columns.push_back(std::move(filled.column));
+      table.columns.back().empty = column.value("empty", "");
+      for (std::size_t row = 0; row < scenes.size(); ++row)
+        table.rows[row].cells.push_back(std::move(filled.cells[row]));
+    }
+  }
+  return table;
+}
+
 std::vector<FilledTable> filled_tables(const ordered_json& definitions, const ordered_json& published,
                                        std::span<const Record> records) {
   std::vector<FilledTable> tables;
-  for (const ordered_json& definition : definitions.at("tables")) {
-    std::vector<std::string> scenes;
-    for (const Record& record : records)
-      if (record.verification.truth || !definition.value("of_truth", false))
-        add_new(scenes, record.scene.name);
-    FilledTable table{definition.at("id"),
-                      definition.at("title"),
-                      {},
-                      {},
-                      definition.value("legend", ""),
-                      definition.value("shape", ordered_json())};
-    for (const std::string& scene : scenes) table.rows.push_back({scene, {}});
-    for (const ordered_json& column : expanded_columns(definition, records))
-      for (Filled& filled : by_pipeline(column, published, scenes, records)) {
-        table.columns.push_back(std::move(filled.column));
-        for (std::size_t row = 0; row < scenes.size(); ++row)
-          table.rows[row].cells.push_back(std::move(filled.cells[row]));
-      }
-    tables.push_back(std::move(table));
-  }
+  for (const ordered_json& definition : definitions.at("tables"))
+    tables.push_back(filled_table(definition, published, records, definition.value("scenes", "all")));
   return tables;
 }
 

@@ -26,6 +26,7 @@ struct Column {
   // as for counters, and for preparation, which is the same code in both and is shown as the first of them
   // has it.
   std::optional<Pipeline> pipeline = Pipeline::vectorised;
+  std::string empty = {};  // what stands in a list where there is no figure
 };
 // "today", "published", or "both".
 std::string_view pipeline_text(const Column& column);
@@ -56,11 +57,14 @@ std::vector<Pipeline> pipelines_of(std::span<const Record> records);
 // The record of a scene in a pipeline; null where none was given.
 const Record* find_record(std::span<const Record> records, const std::string& scene, Pipeline pipeline);
 
-// At most one record a scene and pipeline. Rows are the scenes of the records in their order; in a table with
-// `of_truth`, those alone that were held against truth from outside. A column with
-// `each_strategy` stands for one a strategy of the records, whose name replaces {strategy}. Where there are
-// records of both pipelines, a column stands once for each, unless the figures are the same, and a pipeline
-// in which none was measured has no column.
+// Fills the table of a definition. `records` holds at most one record a scene and pipeline. Rows are the
+// scenes of a kind, in the order of the records: "plain", "contacts", "truth" (held against truth from
+// outside) or "all". A column with `each_strategy` stands for one a strategy of the records, whose name
+// replaces {strategy}. Where there are records of both pipelines, a column stands once for each, unless the
+// figures are the same, and a pipeline in which none was measured has no column.
+FilledTable filled_table(const nlohmann::ordered_json& definition, const nlohmann::ordered_json& published,
+                         std::span<const Record> records, const std::string& kind);
+// The tables that ship.
 std::vector<FilledTable> filled_tables(std::span<const Record> records);
 // The same from other definitions and figures.
 std::vector<FilledTable> filled_tables(const nlohmann::ordered_json& definitions,

@@ -246,7 +246,8 @@ TEST(FilledTables, ShowAnOwnSceneInPlaceOfThePapers) {
 TEST(Schema, HoldsForWhatIsWritten) {
   const std::vector<Record> records = {sample_record()};
   EXPECT_EQ(schema_violation(to_json(records[0]), "run.schema.json"), "");
-  nlohmann::ordered_json document = tables_json(filled_tables(records), judge_claims(records), records);
+  nlohmann::ordered_json document = tables_json(
+      filled_tables(records), shaped_tables(filled_tables(records), records), judge_claims(records), records);
   EXPECT_EQ(schema_violation(document, "tables.schema.json"), "");
   EXPECT_NE(document.dump().find("\"marked\":true"), std::string::npos);
   document["tables"][0]["rows"][0]["cells"][1]["measured"] = "many";

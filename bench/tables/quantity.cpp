@@ -1,11 +1,11 @@
 #include "bench/tables/quantity.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
+#include <array>
 #include <stdexcept>
 
 #include "bench/strategies/catalogue.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
@@ -16,6 +16,7 @@ using nlohmann::ordered_json;
 constexpr std::string_view kStartTest = "embedding";
 // The stage in which the fallback, a complete row, finds which triangles cross at the start.
 constexpr std::string_view kStartSeen = "start";
+constexpr std::array kQueryStages = {"refit", "rv_update", "traversal", "elementary"};
 
 // Why there is no figure.
 struct Missing {
@@ -93,7 +94,12 @@ Amount count_amount(const StrategyRecord& strategy, const std::string& counters,
 // missing.
 Amount time_amount(const StrategyRecord& strategy, const std::string& stages, const std::string& statistic) {
   std::vector<std::vector<double>> sums;
-  for (const std::string& stage : split(stages, '+')) {
+  std::vector<std::string> parts = split(stages, '+');
+  if (const auto query = std::ranges::find(parts, "query"); query != parts.end()) {
+    parts.erase(query);
+    parts.insert(parts.begin(), kQueryStages.begin(), kQueryStages.end());
+  }
+  for (const std::string& stage : parts) {
     const auto column = strategy.ms.find(stage);
     if (column == strategy.ms.end() && stage == kStartTest && needs_embedded_start(strategy.guarantee))
       throw Missing{"this record does not have the time of the test of the start"};
@@ -163,6 +169,21 @@ Measured ratio(const Amount& amount, const Amount& divisor, const std::string& d
   return {estimate.value, estimate, {}};
 }
 
+Measured best_of_baselines(ordered_json definition, const Record& record) {
+  Measured best = {{}, {}, "no complete baseline was run"};
+  for (const StrategyRecord& row : record.strategies) {
+    if (row.guarantee != to_string(Guarantee::complete) || row.name.starts_with("drvbc_fast") ||
+        row.name.ends_with(" --first"))
+      continue;
+    definition["strategy"] = row.name;
+    const Measured one = measure(definition, record);
+    if (!one.value || (best.value && *best.value <= *one.value)) continue;
+    best = one;
+    best.of = row.name;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -175,25 +196,8 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-std::string number_text(double value) {
-  char text[40];
-  const bool whole = value == std::floor(value) && std::abs(value) < 1e9;
-  std::snprintf(text, sizeof text, whole ? "%.0f" : "%.4g", value);
-  return text;
-}
-
-std::string short_text(double value) {
-  const double size = std::abs(value), least = 0.001;
-  if (size > 0 && size < least / 2) return "<0.001";
-  char text[40];
-  if (size < 0.1)
-    std::snprintf(text, sizeof text, "%.*g", size < 0.01 ? 1 : 2, std::round(value / least) * least);
-  else
-    std::snprintf(text, sizeof text, size >= 999.5 ? "%.0f" : "%.3g", value);
-  return text;
-}
-
 Measured measure(const ordered_json& definition, const Record& record) {
+  if (definition.value("strategy", "") == kBestBaseline) return best_of_baselines(definition, record);
   const std::string quantity = definition.at("quantity"), strategy = definition.value("strategy", ""),
                     statistic = definition.value("statistic", "mean"),
                     over = definition.value("over", strategy);
@@ -211,11 +215,19 @@ Measured measure(const ordered_json& definition, const Record& record) {
   }
 }
 
-Measured median_query(const std::string& strategy, const Record& record) {
-  return measure({{"quantity", "ms.refit+rv_update+traversal+elementary"},
-                  {"strategy", strategy},
-                  {"statistic", "median"}},
-                 record);
+Measured median_query(const std::string& strategy, const Record& record, const std::string& over) {
+  ordered_json definition = {{"quantity", "ms.query"}, {"strategy", strategy}, {"statistic", "median"}};
+  if (!over.empty()) definition["over"] = over;
+  return measure(definition, record);
+}
+
+std::string text_of(const Measured& figure, bool with_interval) {
+  if (!figure.value) return "";
+  std::string out = figure_text(*figure.value);
+  if (with_interval && figure.interval)
+    out += " [" + figure_text(figure.interval->low) + ", " + figure_text(figure.interval->high) + "]";
+  if (figure.marked) out += kShortfallMark;
+  return out + (figure.of.empty() ? "" : ", `" + figure.of + "`");
 }
 
 Measured measure_over(const ordered_json& definition, const Record& record, const Record& divisor) {

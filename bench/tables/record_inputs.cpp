@@ -37,7 +37,8 @@ std::size_t place_of(const std::string& scene) {
 
 }  // namespace
 
-RecordFiles record_files(const std::vector<std::string>& named, std::span<const std::string_view> wanted) {
+RecordFiles record_files(const std::vector<std::string>& named, std::span<const std::string_view> wanted,
+                         bool any) {
   RecordFiles files;
   std::string left_out;  // said only where something is left
   const auto add = [&](const fs::path& file, bool named_itself) {
@@ -61,7 +62,7 @@ RecordFiles record_files(const std::vector<std::string>& named, std::span<const 
     }
     for (const fs::path& file : files_in(name, {".json", ".json.gz"})) add(file, false);
   }
-  if (!files.contains(std::string(wanted.front())))
+  if (any ? files.empty() : !files.contains(std::string(wanted.front())))
     throw InputError((named.size() == 1 ? named.front() + " holds no" : "none of these holds a") +
                      " record of cscd run; name what cscd run --json wrote, or a folder of it");
   std::fputs(left_out.c_str(), stderr);

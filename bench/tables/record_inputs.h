@@ -18,8 +18,9 @@ using RecordFiles = std::map<std::string, std::vector<std::filesystem::path>>;
 // that the command reads. A file of another schema of this project, such as tables.json, is left out, as is
 // any JSON without a schema in a folder; if it was named by itself, standard error says so. Throws InputError
 // if a file cannot be read, is no JSON, or was named by itself and has no schema of this project, and if no
-// record of `wanted`'s first schema is left.
-RecordFiles record_files(const std::vector<std::string>& named, std::span<const std::string_view> wanted);
+// record of `wanted`'s first schema is left; with `any`, if no record of any schema is left.
+RecordFiles record_files(const std::vector<std::string>& named, std::span<const std::string_view> wanted,
+                         bool any = false);
 
 // Reads records of different scenes whose verifications passed: those of the paper's scenes in the paper's
 // order, those of their variants with contacts, then others in the given order, each in the pipeline `today`

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "bench/tables/quantity.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
@@ -12,17 +13,11 @@ constexpr char kReference[] = "base";
 
 std::string beside_reference(const std::string& strategy, const Record& record) {
   if (strategy == kReference || record.strategy(kReference) == nullptr) return "";
-  const Measured faster = measure({{"quantity", "ms.refit+rv_update+traversal+elementary"},
-                                   {"strategy", kReference},
-                                   {"over", strategy},
-                                   {"statistic", "median"}},
-                                  record);
+  const Measured faster = median_query(kReference, record, strategy);
   if (!faster.value || *faster.value <= 0) return "";
   const bool slower = *faster.value < 1;
-  char text[64];
-  std::snprintf(text, sizeof text, "  %.3g times %s than %s", slower ? 1 / *faster.value : *faster.value,
-                slower ? "slower" : "faster", kReference);
-  return text;
+  return "  " + figure_text(slower ? 1 / *faster.value : *faster.value) + " times " +
+         (slower ? "slower" : "faster") + " than " + kReference;
 }
 
 }  // namespace
@@ -55,8 +50,8 @@ std::string run_times_text(const Record& record) {
     const Measured total = median_query(strategy.name, record);
     if (!total.value) continue;
     char text[128];
-    std::snprintf(text, sizeof text, "  %-*s %10.4g ms%s", static_cast<int>(width), strategy.name.c_str(),
-                  *total.value, total.marked ? "*" : "");
+    std::snprintf(text, sizeof text, "  %-*s %10s ms%s", static_cast<int>(width), strategy.name.c_str(),
+                  figure_text(*total.value).c_str(), total.marked ? "*" : "");
     rows += text + beside_reference(strategy.name, record) + "\n";
   }
   if (rows.empty()) return "";

@@ -2,6 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "bench/output/data.h"
+#include "bench/output/markdown.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
@@ -12,19 +17,30 @@ struct Figure {
   std::string measured, low, high, published;
 };
 
+// As the paper prints it, but with commas between thousands.
+std::string published_text(double figure) {
+  return figure < 1000 ? exact_text(figure) : figure_text(figure);
+}
+
 // `whole`: to the nearest whole number.
 Figure figure_of(const Cell* cell, bool whole = false) {
   Figure figure;
   if (cell == nullptr) return figure;
-  if (cell->measured.value) {
-    figure.measured = short_text(whole ? std::round(*cell->measured.value) : *cell->measured.value);
-    if (cell->measured.marked) figure.measured += kShortfallMark;
+  Measured measured = cell->measured;
+  if (whole && measured.value) measured.value = std::round(*measured.value);
+  figure.measured = text_of(measured, false);
+  if (measured.interval) {
+    figure.low = figure_text(measured.interval->low);
+    figure.high = figure_text(measured.interval->high);
   }
-  if (cell->measured.interval) {
-    figure.low = short_text(cell->measured.interval->low);
-    figure.high = short_text(cell->measured.interval->high);
-  }
-  if (cell->published) figure.published = number_text(*cell->published);
+  if (cell->published) figure.published = published_text(*cell->published);
+  return figure;
+}
+
+// With everything in the one text.
+Figure bracketed(const Cell& cell) {
+  Figure figure = {text_of(cell.measured, true), {}, {}, {}};
+  if (cell.measured.value && cell.published) figure.measured += " (" + published_text(*cell.published) + ")";
   return figure;
 }
 
@@ -69,7 +85,7 @@ void add_lines(const std::string& name, const std::vector<std::vector<Figure>>& 
 }
 
 ShapedTable shaped(const FilledTable& table, std::span<const Record> records, bool intervals) {
-  ShapedTable out{table.id, table.title, table.legend, {}, {}, {}};
+  ShapedTable out{table.id, table.title, table.legend, "scene", {}, {}, {}};
   for (const ordered_json& group : table.shape) {
     out.groups.push_back({group.at("title"), group.at("columns").size()});
     for (const ordered_json& column : group.at("columns"))
@@ -98,6 +114,44 @@ ShapedTable::Column column_of(const std::string& scene) {
   return {scene.substr(0, end), scene.substr(end + 1)};
 }
 
+// Its columns as lines, and the scenes across. Lines without any figure are left out.
+ShapedTable list_of(const FilledTable& table, const ordered_json& definition, bool intervals) {
+  const bool brackets = definition.value("brackets", false);
+  ShapedTable out{table.id, table.title, table.legend, definition.value("head", ""), {}, {}, {}};
+  for (const Row& row : table.rows) {
+    out.groups.push_back({"", 1});
+    out.columns.push_back(brackets ? ShapedTable::Column{row.scene, ""} : column_of(row.scene));
+  }
+  for (std::size_t c = 0; c < table.columns.size(); ++c) {
+    std::vector<std::vector<Figure>> cells;
+    for (const Row& row : table.rows)
+      cells.push_back({brackets ? bracketed(row.cells[c]) : figure_of(&row.cells[c])});
+    if (std::ranges::all_of(cells, [](const auto& cell) { return cell[0].measured.empty(); })) continue;
+    for (std::vector<Figure>& cell : cells)
+      if (cell[0].measured.empty()) cell[0].measured = table.columns[c].empty;
+    add_lines(table.columns[c].title, cells, intervals, true, out);
+  }
+  return out;
+}
+
+// The lists of a part of table_definitions.json.
+std::vector<ShapedTable> lists_of(const char* part, std::span<const Record> records, bool intervals) {
+  std::vector<Record> today(records.begin(), records.end());
+  std::erase_if(today, [](const Record& record) { return record.pipeline != Pipeline::vectorised; });
+  const std::string definitions = data_json("table_definitions.json").at(part).dump();
+  const ordered_json published = data_json("published.json");
+  std::vector<ShapedTable> out;
+  for (const ordered_json& definition :
+       ordered_json::parse(replaced(definitions, "{all}", row_of_all_contacts(records))))
+    for (const std::string kind : definition.value("scenes", ordered_json::array({"all"}))) {
+      const FilledTable table = filled_table(definition, published, today, kind);
+      out.push_back(list_of(table, definition, intervals));
+      if (kind == "contacts") out.back().id += "_contacts";
+      if (out.back().lines.empty()) out.pop_back();
+    }
+  return out;
+}
+
 // Whether anything was measured in a group that has a title; sizes of scenes stand in one without.
 bool has_measured(const ShapedTable& table) {
   std::size_t first = 0;
@@ -119,8 +173,8 @@ bool ShapedTable::begins_today(std::size_t i) const {
 
 bool ShapedTable::has_marks() const {
   return std::ranges::any_of(lines, [](const Line& line) {
-    return std::ranges::any_of(line.cells,
-                               [](const std::string& cell) { return cell.ends_with(kShortfallMark); });
+    return std::ranges::any_of(
+        line.cells, [](const std::string& cell) { return cell.find(kShortfallMark) != std::string::npos; });
   });
 }
 
@@ -132,38 +186,44 @@ std::vector<ShapedTable> shaped_tables(std::span<const FilledTable> tables, std:
     ShapedTable one = shaped(table, records, intervals);
     if (has_measured(one)) out.push_back(std::move(one));
   }
+  for (ShapedTable& list : lists_of("strategies", records, intervals)) out.push_back(std::move(list));
   return out;
 }
 
-ShapedTable times_of_strategies(std::span<const Record> records, bool intervals) {
-  ShapedTable table{
-      "strategies",
-      "One query with refit: the fast engine, the paper's methods and today's packages",
-      "Milliseconds, the median interval, this project's code around every method (pipeline today).",
-      {},
-      {},
-      {}};
-  std::vector<const Record*> shown;
-  std::vector<std::string> strategies;
-  for (const Record& record : records) {
-    if (record.pipeline != Pipeline::vectorised) continue;
-    shown.push_back(&record);
-    table.groups.push_back({"", 1});
-    table.columns.push_back(column_of(record.scene.name));
-    for (const StrategyRecord& strategy : record.strategies)
-      if (std::ranges::find(strategies, strategy.name) == strategies.end())
-        strategies.push_back(strategy.name);
-  }
-  for (const std::string& strategy : strategies) {
-    std::vector<std::vector<Figure>> cells;
-    for (const Record* record : shown) {
-      const Cell cell{{}, median_query(strategy, *record)};
-      cells.push_back({figure_of(&cell)});
+std::string row_of_all_contacts(std::span<const Record> records) {
+  constexpr char kAll[] = "drvbc_fast_all", kComplete[] = "drvbc_fast_complete";
+  const bool all_promised = std::ranges::all_of(records, [&](const Record& record) {
+    const std::optional<Shortfall> lacking = shortfall(record, kAll);
+    return record.pipeline != Pipeline::vectorised ||
+           (record.strategy(kAll) != nullptr && !(lacking && lacking->void_intervals > 0));
+  });
+  return all_promised ? kAll : kComplete;
+}
+
+std::vector<ShapedTable> page_lists(std::span<const Record> records) {
+  return lists_of("lists", records, false);
+}
+
+std::string markdown_of(const ShapedTable& table) {
+  std::vector<std::string> head = {table.head};
+  for (std::size_t g = 0, i = 0; g < table.groups.size(); ++g)
+    for (const std::size_t end = i + table.groups[g].columns; i < end; ++i) {
+      const std::string &group = table.groups[g].title, &unit = table.columns[i].unit;
+      head.push_back((group.empty() ? "" : group + " ") + table.columns[i].head +
+                     (unit.empty() ? "" : " (" + unit + ")"));
     }
-    add_lines(strategy, cells, intervals, true, table);
-    if (!has_figure(table.lines.back())) table.lines.pop_back();
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t l = 0; l < table.lines.size(); ++l) {
+    if (table.begins_today(l)) {
+      rows.emplace_back(1, std::string("*") + kTodayNote + "*");
+      rows.back().resize(head.size());
+    }
+    const ShapedTable::Line& line = table.lines[l];
+    std::vector<std::string>& row =
+        rows.emplace_back(1, line.scene + (line.scene.empty() || line.kind.empty() ? "" : ", ") + line.kind);
+    for (const std::string& cell : line.cells) row.push_back(cell.empty() ? "–" : replaced(cell, "*", "\\*"));
   }
-  return table;
+  return markdown_table(head, rows);
 }
 
 ordered_json shaped_json(std::span<const ShapedTable> tables) {
@@ -186,7 +246,8 @@ ordered_json shaped_json(std::span<const ShapedTable> tables) {
                    {"note", table.has_marks() ? kMarkNote : ""},
                    {"groups", std::move(groups)},
                    {"columns", std::move(columns)},
-                   {"lines", std::move(lines)}});
+                   {"lines", std::move(lines)},
+                   {"markdown", markdown_of(table)}});
   }
   return out;
 }

@@ -25,7 +25,7 @@ struct ShapedTable {
     std::vector<std::string> cells;  // one a column; empty where there is no figure
     bool of_today = false;           // measured in the pipeline `today`
   };
-  std::string id, title, legend;
+  std::string id, title, legend, head;  // `head` stands above the names of the lines
   std::vector<Group> groups;
   std::vector<Column> columns;
   std::vector<Line> lines;
@@ -41,15 +41,23 @@ inline constexpr char kTodayNote[] = "the same with this project's code around e
 // The paper's Tables 1, 2 and 3 of the scenes in the records, and that of real steps: one line a scene, and
 // beneath it the published figures. A scene with a record of the pipeline `published` is shown in that one;
 // other scenes stand below, in the pipeline `today`. With `intervals`, the ends of the 95 % intervals stand
-// in lines of their own. A table in which no strategy was measured is left out.
+// in lines of their own. A table in which no strategy was measured is left out. The last, "strategies", is
+// what one query takes with every strategy of the pipeline `today`.
 std::vector<ShapedTable> shaped_tables(std::span<const FilledTable> tables, std::span<const Record> records,
                                        bool intervals = false);
 
-// What one query takes with every strategy of the pipeline `today`: strategies down, scenes across, the
-// median interval with refit in milliseconds. No columns without such a record.
-ShapedTable times_of_strategies(std::span<const Record> records, bool intervals = false);
+// The row of the fast engine that finds all contacts in these records: drvbc_fast_all where it was run on all
+// scenes and promises something from every verified start, and else drvbc_fast_complete.
+std::string row_of_all_contacts(std::span<const Record> records);
 
-// For the report's page.
+// The lists that pages show of records of the pipeline `today`: quantities down, scenes across. A list of
+// which nothing was measured is left out; a list of scenes with contacts has the id ID_contacts.
+std::vector<ShapedTable> page_lists(std::span<const Record> records);
+
+// With each table as it stands on a page in Markdown, without its title, legend and note.
 nlohmann::ordered_json shaped_json(std::span<const ShapedTable> tables);
+
+// The table alone. Nothing in it but the names of lines is Markdown.
+std::string markdown_of(const ShapedTable& table);
 
 }  // namespace cscd::bench

@@ -41,7 +41,8 @@ void tables(const TableOptions& options) {
   const std::vector<ClaimResult> claims =
       options.no_claims ? std::vector<ClaimResult>() : judge_claims(records);
   if (options.folder.empty()) {
-    std::fputs(tables_text(shaped, claims, records, page_of(options)).c_str(), stdout);
+    const std::string text = tables_text(shaped, remarks(shaped, claims, records), page_of(options));
+    std::fputs(text.c_str(), stdout);
     return;
   }
   const fs::path folder(options.folder);
@@ -49,15 +50,13 @@ void tables(const TableOptions& options) {
       csv(folder / "tables.csv", options.force, ".csv");
   std::optional<OutputFile> page;  // tables.md links it where there is a claim to link
   if (any_measured(claims)) page.emplace(folder / "claims.md", options.force, ".md");
-  std::vector<ShapedTable> all = shaped;
-  all.push_back(times_of_strategies(records, options.intervals));
   std::deque<OutputFile> floats;
-  for (const ShapedTable& table : all)
+  for (const ShapedTable& table : shaped)
     floats.emplace_back(folder / (table.id + ".tex"), options.force, ".tex");
-  json.commit(json_text(tables_json(made, claims, records)));
-  text.commit(tables_markdown(shaped, all.back(), claims, records));
+  json.commit(json_text(tables_json(made, shaped, claims, records)));
+  text.commit(tables_markdown(shaped, claims, records));
   csv.commit(tables_csv(made));
-  for (std::size_t i = 0; i < all.size(); ++i) floats[i].commit(latex_table(all[i]));
+  for (std::size_t i = 0; i < shaped.size(); ++i) floats[i].commit(latex_table(shaped[i]));
   if (page) page->commit(claims_markdown(claims));
 }
 

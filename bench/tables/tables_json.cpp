@@ -2,6 +2,8 @@
 
 #include "bench/output/data.h"
 #include "bench/tables/provenance.h"
+#include "bench/tables/tables_text.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
@@ -10,11 +12,11 @@ using nlohmann::ordered_json;
 
 std::string interval(const Measured& measured) {
   if (!measured.interval) return ",";
-  return number_text(measured.interval->low) + "," + number_text(measured.interval->high);
+  return short_text(measured.interval->low) + "," + short_text(measured.interval->high);
 }
 
 std::string number(const std::optional<double>& value) {
-  return value ? number_text(*value) : "";
+  return value ? short_text(*value) : "";
 }
 
 ordered_json number_or_null(const std::optional<double>& value) {
@@ -27,7 +29,8 @@ ordered_json cell_json(const Column& column, const Cell& cell) {
                       {"unit", column.unit},
                       {"pipeline", pipeline_text(column)},
                       {"published", number_or_null(cell.published)},
-                      {"measured", number_or_null(cell.measured.value)}};
+                      {"measured", number_or_null(cell.measured.value)},
+                      {"text", text_of(cell.measured, true)}};
   if (cell.measured.interval) out["interval"] = {cell.measured.interval->low, cell.measured.interval->high};
   if (cell.measured.marked) out["marked"] = true;
   if (!cell.measured.reason.empty()) out["reason"] = cell.measured.reason;
@@ -41,6 +44,7 @@ ordered_json source_json(const Record& record) {
           {"digest", record.scene.digest},
           {"command", record.command},
           {"environment", record.environment},
+          {"measured", environments({&record, 1}).front()},
           {"threads", threads_text(record)},
           {"intervals", record.intervals},
           {"counted_intervals", record.counted_intervals.size()},
@@ -64,9 +68,10 @@ std::string quoted(const std::string& field) {
 
 }  // namespace
 
-ordered_json tables_json(std::span<const FilledTable> tables, std::span<const ClaimResult> claims,
-                         std::span<const Record> records) {
-  ordered_json sources = ordered_json::array(), out_tables = ordered_json::array();
+ordered_json tables_json(std::span<const FilledTable> tables, std::span<const ShapedTable> shaped,
+                         std::span<const ClaimResult> claims, std::span<const Record> records) {
+  ordered_json sources = ordered_json::array(), out_tables = ordered_json::array(),
+               said = ordered_json::array();
   for (const Record& record : records) sources.push_back(source_json(record));
   for (const FilledTable& table : tables) {
     ordered_json rows = ordered_json::array();
@@ -78,10 +83,17 @@ ordered_json tables_json(std::span<const FilledTable> tables, std::span<const Cl
     }
     out_tables.push_back({{"id", table.id}, {"title", table.title}, {"rows", std::move(rows)}});
   }
+  for (const Remark& one : remarks(shaped, claims, records))
+    said.push_back({{"name", one.name}, {"text", one.text}});
+  ordered_json all_shaped = shaped_json(shaped);
+  for (ordered_json& list : shaped_json(page_lists(records))) all_shaped.push_back(std::move(list));
   const ordered_json published = data_json("published.json");
   return {{"schema", kTablesSchema},
           {"published", {{"source", published.at("source")}, {"machine", published.at("machine")}}},
           {"records", std::move(sources)},
+          {"remarks", std::move(said)},
+          {"mark_note", kMarkNote},
+          {"shaped", std::move(all_shaped)},
           {"tables", std::move(out_tables)},
           {"claims", claims_json(claims)}};
 }

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "bench/output/data.h"
 #include "bench/output/markdown.h"
 #include "bench/tables/provenance.h"
 #include "bench/tables/run_times.h"
+#include "core/base/number_text.h"
 #include "scenes/base/joined.h"
 
 namespace cscd::bench {
@@ -137,8 +137,9 @@ std::string table_text(const ShapedTable& table) {
 }
 
 // A name, then a text in as many lines as it takes. At least one blank stands between the two.
-std::string remark(const std::string& name, const std::string& text) {
+std::string remark_text(const Remark& remark) {
   constexpr std::size_t kNameWidth = 12;
+  const auto& [name, text] = remark;
   std::string out, line = left(name.empty() ? name : name + " ", kNameWidth);
   std::size_t at = 0;
   while (at < text.size()) {
@@ -164,14 +165,10 @@ bool is_published(const ShapedTable& table) {
   return std::ranges::find(table.lines, "published", &ShapedTable::Line::kind) != table.lines.end();
 }
 
-bool any_marks(std::span<const ShapedTable> tables) {
-  return std::ranges::any_of(tables, [](const ShapedTable& table) { return table.has_marks(); });
-}
-
 // "1.32 to 7.88".
 std::string range_text(std::vector<double> values, const char* between = " to ") {
   std::ranges::sort(values);
-  const std::string low = short_text(values.front()), high = short_text(values.back());
+  const std::string low = figure_text(values.front()), high = figure_text(values.back());
   return low == high ? low : low + between + high;
 }
 
@@ -199,52 +196,13 @@ std::string no_claims_from(std::span<const Record> records) {
   return "";
 }
 
-constexpr char kFirst[] = "drvbc_fast", kAll[] = "drvbc_fast_all", kComplete[] = "drvbc_fast_complete",
-               kPaper[] = "drvbc";
-
-// The row of the fast engine that finds all contacts in these records: drvbc_fast_all where it was run on all
-// scenes and promises something from every verified start, and else drvbc_fast_complete.
-std::string row_of_all_contacts(std::span<const Record> records) {
-  const bool all_promised = std::ranges::all_of(records, [](const Record& record) {
-    const std::optional<Shortfall> lacking = shortfall(record, kAll);
-    return record.pipeline != Pipeline::vectorised ||
-           (record.strategy(kAll) != nullptr && !(lacking && lacking->void_intervals > 0));
-  });
-  return all_promised ? kAll : kComplete;
-}
-
-// How many times faster a row answers the median interval than another one, which must be asked the same
-// question.
-std::optional<double> times_faster(const Record& record, const std::string& fast, const std::string& other) {
-  return measure({{"quantity", "ms.refit+rv_update+traversal+elementary"},
-                  {"strategy", other},
-                  {"over", fast},
-                  {"statistic", "median"}},
-                 record)
-      .value;
-}
-
-// The same over the fastest complete row that is not of the fast engine.
-std::optional<double> over_best_complete(const Record& record, const std::string& fast) {
-  std::optional<double> best;
-  for (const StrategyRecord& strategy : record.strategies) {
-    if (strategy.guarantee != "complete" || strategy.name.starts_with(kFirst)) continue;
-    const std::optional<double> faster = times_faster(record, fast, strategy.name);
-    if (faster && (!best || *faster < *best)) best = faster;
-  }
-  return best;
-}
-
-std::optional<double> over_paper(const Record& record, const std::string& fast) {
-  return times_faster(record, fast, kPaper);
-}
+constexpr char kFirst[] = "drvbc_fast", kPaper[] = "drvbc";
 
 // A line of what the median query takes a row of the fast engine, and of how many times faster that is than
-// rows that are asked the same: "first contact: 5.2-14.6 times faster than drvbc". Empty where it was not
+// a row that is asked the same: "first contact: 5.2-14.6 times faster than drvbc". Empty where it was not
 // timed.
 std::string fast_text(std::span<const Record> records, const std::string& fast, const std::string& question,
-                      std::optional<double> (*faster)(const Record&, const std::string&),
-                      const std::string& than) {
+                      const std::string& than, const std::string& than_text) {
   std::vector<double> medians, ratios;
   bool marked = false;
   for (const Record& record : records) {
@@ -253,17 +211,13 @@ std::string fast_text(std::span<const Record> records, const std::string& fast, 
     if (!median.value) continue;
     medians.push_back(*median.value);
     marked = marked || median.marked;
-    if (const std::optional<double> ratio = faster(record, fast)) ratios.push_back(*ratio);
+    if (const Measured ratio = median_query(than, record, fast); ratio.value) ratios.push_back(*ratio.value);
   }
   if (medians.empty()) return "";
   const std::string mark = marked ? std::string(kShortfallMark) : "";
   std::string out = range_text(medians, "-") + mark + " ms the median query; " + question;
-  if (!ratios.empty()) out += ": " + range_text(ratios, "-") + mark + " times faster than " + than;
+  if (!ratios.empty()) out += ": " + range_text(ratios, "-") + mark + " times faster than " + than_text;
   return out;
-}
-
-std::string measured_text(std::span<const Record> records) {
-  return joined(environments(records), "; and ");
 }
 
 std::string code_around(std::span<const Record> records) {
@@ -272,26 +226,8 @@ std::string code_around(std::span<const Record> records) {
              : "today: this project's code around every method";
 }
 
-std::string markdown_of(const ShapedTable& table, const std::string& first_head) {
-  std::vector<std::string> head = {first_head};
-  for (std::size_t g = 0, i = 0; g < table.groups.size(); ++g)
-    for (const std::size_t end = i + table.groups[g].columns; i < end; ++i) {
-      const std::string &group = table.groups[g].title, &unit = table.columns[i].unit;
-      head.push_back((group.empty() ? "" : group + " ") + table.columns[i].head +
-                     (unit.empty() ? "" : " (" + unit + ")"));
-    }
-  std::vector<std::vector<std::string>> rows;
-  for (std::size_t l = 0; l < table.lines.size(); ++l) {
-    if (table.begins_today(l)) {
-      rows.emplace_back(1, std::string("*") + kTodayNote + "*");
-      rows.back().resize(head.size());
-    }
-    const ShapedTable::Line& line = table.lines[l];
-    std::vector<std::string>& row =
-        rows.emplace_back(1, line.scene + (line.scene.empty() || line.kind.empty() ? "" : ", ") + line.kind);
-    for (const std::string& cell : line.cells) row.push_back(cell.empty() ? "–" : cell);
-  }
-  return "\n## " + table.title + "\n\n" + table.legend + "\n\n" + markdown_table(head, rows) +
+std::string section_of(const ShapedTable& table) {
+  return "\n## " + table.title + "\n\n" + table.legend + "\n\n" + markdown_of(table) +
          (table.has_marks() ? std::string("\n\\") + kMarkNote + "\n" : "");
 }
 
@@ -336,47 +272,49 @@ std::string title(const std::string& text) {
 
 }  // namespace
 
-std::string tables_text(std::span<const ShapedTable> tables, std::span<const ClaimResult> claims,
-                        std::span<const Record> records, const std::string& page) {
-  std::vector<ShapedTable> shown(tables.begin(), tables.end());
-  if (std::ranges::none_of(tables, is_published)) {
-    std::vector<Record> today(records.begin(), records.end());
-    std::erase_if(today, [](const Record& record) { return record.pipeline != Pipeline::vectorised; });
-    if (!today.empty()) shown.push_back(times_of_strategies(today));
+std::vector<Remark> remarks(std::span<const ShapedTable> tables, std::span<const ClaimResult> claims,
+                            std::span<const Record> records) {
+  std::vector<Remark> out = {{"measured", joined(environments(records), "; and ")},
+                             {"pipeline", code_around(records)}};
+  if (std::ranges::any_of(tables, is_published)) out.push_back({"published", published_machine()});
+  const std::string held = claims_text(claims), why_none = no_claims_from(records);
+  if (!held.empty()) out.push_back({"claims", held});
+  if (!why_none.empty()) {  // nothing is said of speed where nothing may be claimed
+    out.push_back({held.empty() ? "claims" : "", "none is made where " + why_none});
+    return out;
   }
-  std::string out;
-  for (const ShapedTable& table : shown) out += table_text(table) + "\n";
-  const std::string why_none = no_claims_from(records), held = claims_text(claims),
-                    all = row_of_all_contacts(records);
-  std::string first, every;  // nothing is said of speed where nothing may be claimed
-  if (why_none.empty()) {
-    first = fast_text(records, kFirst, "first contact", over_paper, kPaper);
-    every = fast_text(records, all, "all contacts", over_best_complete,
-                      "the best complete row of another method");
-  }
-  if (any_marks(shown) || (first + every).find(kShortfallMark) != std::string::npos)
-    out += std::string(kMarkNote) + "\n";
-  out += remark("measured", measured_text(records));
-  out += remark("pipeline", code_around(records));
-  if (std::ranges::any_of(tables, is_published)) out += remark("published", published_machine());
-  if (!held.empty()) out += remark("claims", held);
-  if (!why_none.empty()) out += remark(held.empty() ? "claims" : "", "none is made where " + why_none);
-  if (!first.empty()) out += remark(kFirst, first);
-  if (!every.empty()) out += remark(all, every);
-  if (!page.empty()) out += remark("page", page);
+  const std::string all = row_of_all_contacts(records);
+  out.push_back({kFirst, fast_text(records, kFirst, "first contact", kPaper, kPaper)});
+  out.push_back({all, fast_text(records, all, "all contacts", kBestBaseline,
+                                "the best complete row of another method")});
+  std::erase_if(out, [](const Remark& one) { return one.text.empty(); });
   return out;
 }
 
-std::string tables_markdown(std::span<const ShapedTable> tables, const ShapedTable& strategies,
-                            std::span<const ClaimResult> claims, std::span<const Record> records) {
-  std::string out = "# Published and measured\n\nMeasured: " + measured_text(records) + "; pipeline " +
-                    code_around(records) + ".\n";
+std::string tables_text(std::span<const ShapedTable> tables, std::span<const Remark> remarks,
+                        const std::string& page) {
+  const bool has_published = std::ranges::any_of(tables, is_published);
+  std::string out, said;
+  bool marked = false;
+  for (const ShapedTable& table : tables) {
+    if (has_published && table.id == "strategies") continue;  // long, and on the page
+    out += table_text(table) + "\n";
+    marked = marked || table.has_marks();
+  }
+  for (const Remark& one : remarks) said += remark_text(one);
+  if (marked || said.find(kShortfallMark) != std::string::npos) out += std::string(kMarkNote) + "\n";
+  return out + said + (page.empty() ? "" : remark_text({"page", page}));
+}
+
+std::string tables_markdown(std::span<const ShapedTable> tables, std::span<const ClaimResult> claims,
+                            std::span<const Record> records) {
+  std::string out = "# Published and measured\n\nMeasured: " + joined(environments(records), "; and ") +
+                    "; pipeline " + code_around(records) + ".\n";
   if (std::ranges::any_of(tables, is_published)) out += "Published: " + published_machine() + ".\n";
   out +=
       "\nA dash stands where there is no figure. Every figure, with its 95 % interval, is in `tables.csv` "
       "and `tables.json`.\n";
-  for (const ShapedTable& table : tables) out += markdown_of(table, "scene");
-  if (!strategies.columns.empty()) out += markdown_of(strategies, "strategy");
+  for (const ShapedTable& table : tables) out += section_of(table);
   return out + claims_section(claims, claims.empty() ? "" : no_claims_from(records)) +
          "\n## How it was measured\n\n" + how_measured(records);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <string>
@@ -14,10 +15,28 @@ inline std::string exact_text(double number) {
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
-// Rounded to four digits.
-inline std::string short_text(double number) {
+// Rounded to so many significant digits; all digits before the point stand in any case, up to a size of 1e15.
+inline std::string rounded_text(double number, int digits) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.4g", number);
+  const double size = std::abs(number);
+  if (size >= std::pow(10, digits) - 0.5 && size < 1e15)
+    std::snprintf(text, sizeof text, "%.0f", number);
+  else
+    std::snprintf(text, sizeof text, "%.*g", digits, number);
+  return text;
+}
+
+// A number in a sentence: rounded to four digits.
+inline std::string short_text(double number) {
+  return rounded_text(number, 4);
+}
+
+// A figure of a table or a page: rounded to three digits, with commas between thousands.
+inline std::string figure_text(double number) {
+  std::string text = rounded_text(number, 3);
+  const std::size_t begin = text.starts_with('-') ? 1 : 0;
+  if (text.find_first_not_of("0123456789", begin) != std::string::npos) return text;
+  for (std::size_t at = text.size(); at > begin + 3;) text.insert(at -= 3, ",");
   return text;
 }
 

@@ -1,27 +1,28 @@
 // Line and point charts of the report (uPlot), in colours of the page, redrawn when the page turns dark or changes its width.
 import uPlot from "uplot";
 import { isDark } from "./dom.js";
-import { BLUE, GREEN, GREY, ORANGE, PINK, RED, SKY } from "./palette.js";
+import { GREY } from "./palette.js";
 
-// The colours of scripts/lib/charts.py: a family of strategies has one, and dashes tell its members apart; so has each elementary test.
-const LOOKS = [["base", "#000000"], ["aabb", SKY], ["mcd", ORANGE], ["selfccd", GREEN], ["embree", SKY], ["cgal_boxes", SKY], ["fcl", GREY], ["rvbc", PINK], ["drvbc", BLUE], ["drvbc_fast", RED],
-  ["newton", "#000000"], ["filtered_exact", RED], ["exact", PINK], ["cubic", ORANGE], ["inclusion", BLUE], ["additive", GREEN]];
-const DASHES = [[6, 4], [2, 3], [9, 3, 2, 3], [4, 2]];
+// The looks of strategies and elementary tests (bench/tables/looks.json), which the report has in its document.
+let looks = { strategies: {}, tests: {} };
+export const setLooks = (found) => { looks = found; };
 
-export const short = (x) => (Math.abs(x) >= 1e5 || Number.isInteger(x) ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));
+const FIRST = " --first";
+const baseOf = (name) => name.split("@")[0].replace(FIRST, "");
+
+// A figure as `cscd` writes it: three significant digits, all digits before the point, commas between thousands.
+export const number = (x) => (Math.abs(x) >= 999.5 ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));
 
 // The text of a value; none where there is no value.
-export const textOf = (value, text = short) => (value === null || value === undefined ? "" : text(value));
+export const textOf = (value, text = number) => (value === null || value === undefined ? "" : text(value));
 
 // Black becomes white on a dark page.
 const seen = (colour) => (colour === "#000000" && isDark() ? "#ffffff" : colour);
 
-export function colourOf(name) {
-  const row = LOOKS.filter(([known]) => name === known || name.startsWith(`${known}_`) || name.startsWith(`${known}@`)).at(-1);
-  return seen(row ? row[1] : GREY);
-}
+export const colourOf = (name) => seen(looks.strategies[baseOf(name)]?.colour ?? looks.tests[baseOf(name)] ?? GREY);
 
-export const dashOf = (name, index) => (LOOKS.some(([known]) => known === name) && !["embree", "cgal_boxes"].includes(name) ? [] : DASHES[index % DASHES.length]);
+// Dashes are given in widths of the line, which is 1.6 pixels wide.
+export const dashOf = (name) => (name.endsWith(FIRST) ? [1, 1.65] : looks.strategies[baseOf(name)]?.dash ?? []).map((part) => 1.6 * part);
 
 const charts = [];
 export const redrawCharts = () => charts.forEach((chart) => chart.draw());

@@ -1,29 +1,17 @@
 // The report: the numbers of records in one page. Charts are in charts.js; accuracy, growth and history in studies.js.
-import { Chart, colourOf, dashOf, LINEAR, LOG, redrawCharts, short, textOf } from "./charts.js";
+import { Chart, colourOf, dashOf, LINEAR, LOG, number, redrawCharts, setLooks, textOf } from "./charts.js";
 import { byId, element, isDark, prefersDark, radios, setDark } from "./dom.js";
-import { BLUE, ORANGE, SKY } from "./palette.js";
 import { showAccuracy, showGrowth, showHistory } from "./studies.js";
 import { shapedTable, tableOf } from "./tables.js";
 
-const FIRST_SHOWN = new Set(["base", "aabb", "mcd", "selfccd", "rvbc", "drvbc", "drvbc_fast", "drvbc_fast_complete"]);
-const STAGES = [["refit", "#999999"], ["rv_update", SKY], ["traversal", ORANGE], ["elementary", BLUE]];
-const COMPLETE_BASELINES = ["base", "aabb", "mcd", "selfccd", "embree", "cgal_boxes"];
 const COUNTERS = [["bvot", "overlap tests of bounding volumes (Figure 11)"], ["pctp", "triangle pairs left by culling (Figure 12)"], ["elementary_tests", "elementary tests"], ["not_positive", "triangles that are not positive"]];
-
-const withInterval = (cell) => short(cell.measured) + (cell.marked ? "*" : "") + (cell.interval ? ` [${short(cell.interval[0])}, ${short(cell.interval[1])}]` : "");
 
 class Report {
   constructor(data) {
     this.data = data;
+    this.number = number;
     for (const claim of data.tables.claims) claim.verdict = claim.verdict.replaceAll(" ", "_");
-    // Cells by table, scene and key. Where records of both pipelines are given, the headline is about this project's.
-    this.cells = new Map();
-    for (const table of data.tables.tables)
-      for (const row of table.rows)
-        for (const cell of row.cells) if (cell.pipeline !== "published") this.cells.set(`${table.id} ${row.scene} ${cell.key}`, cell);
-    this.scenes = [...new Set(data.records.map((record) => record.scene))];
-    // Baselines find all contacts, so the row that they are compared with has to find them, too.
-    this.findsAll = this.scenes.every((scene) => this.median(scene, "drvbc_fast_all")) ? "drvbc_fast_all" : "drvbc_fast_complete";
+    setLooks(data.looks);
     this.bothPipelines = new Set(data.records.map((record) => record.pipeline)).size > 1;
     this.counter = "pctp";
     this.record = data.records[0];
@@ -54,37 +42,11 @@ class Report {
 
   nameOf(record) { return this.bothPipelines ? `${record.scene}, pipeline ${record.pipeline}` : record.scene; }
 
-  cell(table, scene, key) {
-    const cell = this.cells.get(`${table} ${scene} ${key}`);
-    return cell && cell.measured !== null ? cell : null;
-  }
-
-  // What the median query takes a row, with refit.
-  median(scene, row) { return this.cell("beside", scene, `${row}.with_refit_median`); }
-
-  // The fastest complete baseline, and how many times faster the engine is when it is asked for all contacts, too.
-  bestBaseline(scene) {
-    const own = this.median(scene, this.findsAll);
-    if (!own) return undefined;
-    const rows = COMPLETE_BASELINES.map((name) => ({ name, cell: this.median(scene, name) })).filter((row) => row.cell)
-      .map(({ name, cell }) => ({ name, cell: { measured: cell.measured / own.measured, marked: Boolean(cell.marked || own.marked) } }));
-    return rows.sort((a, b) => a.cell.measured - b.cell.measured)[0];
-  }
-
+  // What the records say in words: of the engine first, then all else.
   say() {
-    const { scenes } = this;
-    const { caution } = this.data;  // nothing is said of speed or of claims where nothing may be claimed
-    const times = caution ? [] : scenes.map((scene) => this.cell("engine", scene, "fast.median")).filter((cell) => cell && !cell.marked).map((cell) => cell.measured);
-    const gains = scenes.map((scene) => this.bestBaseline(scene)).filter((row) => row && !row.cell.marked).map((row) => row.cell.measured);
-    const range = (values) => (Math.min(...values) === Math.max(...values) ? short(values[0]) : `${short(Math.min(...values))} to ${short(Math.max(...values))}`);
-    byId("headline").textContent = times.length === 0 ? `What ${scenes.length} records say`
-      : `From a start that is known to be embedded, drvbc_fast answers the median interval in ${range(times)} ms` + (gains.length ? `, and ${this.findsAll} finds all contacts ${range(gains)} times faster than the fastest complete baseline.` : ".");
-    const verdicts = this.data.tables.claims.filter((claim) => claim.verdict !== "not_measured");
-    const reproduced = verdicts.filter((claim) => claim.verdict === "reproduced").length;
-    const { environment } = this.data.tables.records[0];
-    const sum = (key) => this.data.tables.records.reduce((total, record) => total + (record[key] || 0), 0);
-    byId("summary").textContent = (caution ? `Beware: ${caution}. Nothing is claimed from that. ` : "") + `${scenes.length} scene${scenes.length === 1 ? "" : "s"}; ${sum("verified_intervals")} intervals verified, ${sum("timed_intervals")} timed. ` +
-      (verdicts.length ? `${reproduced} of ${verdicts.length} claims of the paper that can be measured here are reproduced. ` : "") + `${environment.cpu}, ${environment.cores} cores, ${environment.compiler}, commit ${environment.commit.slice(0, 12)}${environment.dirty ? " with changes" : ""}, ${environment.date.slice(0, 10)}.`;
+    const { remarks, records } = this.data.tables, isHead = ({ name }) => name === "drvbc_fast", head = remarks.find(isHead);
+    byId("headline").textContent = head ? `${head.name}: ${head.text}` : `What ${records.length} record${records.length === 1 ? " says" : "s say"}`;
+    byId("summary").textContent = remarks.filter((one) => !isHead(one)).map(({ name, text }) => `${name ? `${name}: ` : ""}${text}.`).join(" ");
   }
 
   linkTo(file) {
@@ -102,20 +64,9 @@ class Report {
   }
 
   speed() {
-    const { scenes } = this;
-    const rows = [
-      ["one query of drvbc_fast, ms (median)", (scene) => this.cell("engine", scene, "fast.median")],
-      [`all contacts, ${this.findsAll}: times faster than the best complete baseline`, (scene) => this.bestBaseline(scene)?.cell, (scene) => this.bestBaseline(scene)?.name],
-      ["first contact, drvbc_fast: times faster than drvbc, the paper's method", (scene) => this.cell("engine", scene, "fast.over_drvbc")],
-      ["drvbc: times faster than base", (scene) => this.cell("table2", scene, "speedup_base"), (scene) => textOf(this.cells.get(`table2 ${scene} speedup_base`)?.published, (published) => `published ${short(published)}`)],
-    ];
-    const measured = rows.filter(([, cell]) => scenes.some((scene) => cell(scene)));
-    byId("speed-table").append(tableOf(["", ...scenes], measured.map(([title, cell, note]) => [title, ...scenes.map((scene) => {
-      const found = cell(scene), td = element("td", found ? withInterval(found) : "–");
-      if (note && note(scene)) td.append(element("small", note(scene)));
-      return td;
-    })])));
-    this.source("speed-source", "Brackets hold 95 % intervals.");
+    const speed = this.data.tables.shaped.find(({ id }) => id === "speed");
+    if (speed) byId("speed-table").append(shapedTable(speed));
+    this.source("speed-source", "Brackets hold 95 % intervals, parentheses what was published.");
   }
 
   curves() {
@@ -139,8 +90,8 @@ class Report {
       const rows = this.record.strategies.filter((strategy) => strategy.counts[this.counter]);
       return {
         data: [this.record.counted_intervals, ...rows.map((strategy) => strategy.counts[this.counter].map((value) => (value > 0 ? value : null)))],
-        series: rows.map((strategy, i) => ({
-          label: strategy.name, stroke: colourOf(strategy.name), dash: dashOf(strategy.name, i), show: FIRST_SHOWN.has(strategy.name),
+        series: rows.map((strategy) => ({
+          label: strategy.name, stroke: colourOf(strategy.name), dash: dashOf(strategy.name), show: this.data.looks.first.includes(strategy.name),
           value: (_, value) => textOf(value, (count) => count.toLocaleString("en")),
         })),
         x: { label: "interval", scale: LINEAR },
@@ -201,7 +152,7 @@ class Report {
     byId(name).hidden = !data;
     document.querySelector(`nav a[href="#${name}"]`).hidden = !data;
     if (!data) return;
-    show(data);
+    show(data, this.data);
     const place = byId(`${name}-source`);
     place.append("From ", this.linkTo(data.file || data.folder));
     if (data.environment) place.append(`, measured on ${data.environment.cpu}, ${data.environment.date.slice(0, 10)}, commit ${data.environment.commit.slice(0, 12)}`);
@@ -220,8 +171,8 @@ class Report {
 
   stages() {
     const box = byId("stage-chart");
-    const key = element("p");
-    for (const [stage, colour] of STAGES) {
+    const key = element("p"), { looks } = this.data, { stages } = looks;
+    for (const [stage, colour] of stages) {
       const item = element("span", undefined, "key"), swatch = element("i");
       swatch.style.background = colour;
       item.append(swatch, stage);
@@ -229,24 +180,24 @@ class Report {
     }
     box.append(key);
     this.data.records.forEach((record, n) => {
-      const rows = record.strategies.filter((strategy) => strategy.stages && FIRST_SHOWN.has(strategy.name));
+      const rows = record.strategies.filter((strategy) => strategy.stages && looks.first.includes(strategy.name));
       if (rows.length === 0) return;
       const details = element("details"), bars = element("div", undefined, "bars");
       details.open = n === 0;
       details.append(element("summary", this.nameOf(record)), bars);
-      const total = (strategy) => STAGES.reduce((sum, [stage]) => sum + (strategy.stages[stage] || 0), 0);
+      const total = (strategy) => stages.reduce((sum, [stage]) => sum + (strategy.stages[stage] || 0), 0);
       const most = Math.max(...rows.map(total));
       for (const strategy of rows) {
         const bar = element("span", undefined, "bar");
-        for (const [stage, colour] of STAGES) {
+        for (const [stage, colour] of stages) {
           if (!strategy.stages[stage]) continue;
           const piece = element("i");
           piece.style.width = `${(100 * strategy.stages[stage]) / most}%`;
           piece.style.background = colour;
-          piece.title = `${stage}: ${short(strategy.stages[stage])} ms`;
+          piece.title = `${stage}: ${number(strategy.stages[stage])} ms`;
           bar.append(piece);
         }
-        bars.append(element("span", strategy.name), bar, element("span", `${short(total(strategy))} ms`));
+        bars.append(element("span", strategy.name), bar, element("span", `${number(total(strategy))} ms`));
       }
       box.append(details);
     });
@@ -255,17 +206,17 @@ class Report {
 
   // The paper's tables in the paper's shape, the times of all strategies, and folded away every figure of every table.
   tables() {
-    const list = byId("table-list"), { shaped, tables } = this.data;
-    for (const table of shaped) if (table.columns.length > 0) list.append(shapedTable(table));
+    const list = byId("table-list"), { shaped, tables, mark_note: note } = this.data.tables;
+    for (const table of shaped) if (table.title) list.append(shapedTable(table));
     const every = element("details");
     every.append(element("summary", "Every figure, with its 95 % interval"));
-    for (const table of tables.tables) {
+    for (const table of tables) {
       const titles = table.rows.flatMap((row, n) => (n ? [] : row.cells.map((cell, i) => [i, cell])));
       const rows = titles.filter(([i]) => table.rows.some((row) => row.cells[i].measured !== null)).map(([i, { title, unit, pipeline }]) => [
         title + (unit ? `, ${unit}` : "") + (this.bothPipelines && pipeline && pipeline !== "both" ? `, pipeline ${pipeline}` : ""),
         ...table.rows.map((row) => {
-          const cell = row.cells[i], td = element("td", cell.measured === null ? "–" : withInterval(cell));
-          if (cell.published !== null) td.append(element("small", `published ${short(cell.published)}`));
+          const cell = row.cells[i], td = element("td", cell.text || "–");
+          if (cell.published !== null) td.append(element("small", `published ${cell.published}`));
           return td;
         })]);
       if (rows.length === 0) continue;
@@ -274,8 +225,8 @@ class Report {
       details.append(element("summary", table.title), wide);
       every.append(details);
     }
-    const marked = tables.tables.some((table) => table.rows.some((row) => row.cells.some((cell) => cell.marked)));
-    if (marked) every.append(element("p", this.data.mark_note, "hint"));
+    const marked = tables.some((table) => table.rows.some((row) => row.cells.some((cell) => cell.marked)));
+    if (marked) every.append(element("p", note, "hint"));
     list.append(every);
     const { published } = this.data.tables;
     this.source("tables-source", `Published: ${published.source} (${published.machine}).`);
@@ -289,7 +240,7 @@ class Report {
       const evidence = element("td", undefined, "text"), details = element("details");
       const figures = claim.evidence.filter((one) => one.measured !== undefined);
       details.append(element("summary", `${figures.filter((one) => one.holds).length} of ${figures.length} figures hold`));
-      for (const one of figures) details.append(element("div", `${one.holds ? "✔" : "✖"} ${one.scene}: ${one.title} ${short(one.measured)}${one.today === undefined ? "" : ` (${short(one.today)} with this project's code)`}`));
+      for (const one of figures) details.append(element("div", `${one.holds ? "✔" : "✖"} ${one.scene}: ${one.title} ${one.text}${one.today_text ? ` (${one.today_text} with this project's code)` : ""}`));
       evidence.append(details);
       return [quote, verdict, element("td", claim.expectation, "text"), evidence];
     });

@@ -1,11 +1,9 @@
 // The parts of the report about studies of their own: accuracy against time, growth, and history.
-import { aligned, Chart, colourOf, dashOf, LINEAR, LOG, short, textOf } from "./charts.js";
+import { aligned, Chart, colourOf, dashOf, LINEAR, LOG, number, textOf } from "./charts.js";
 import { byId, element, radios } from "./dom.js";
 import { GREY } from "./palette.js";
 import { tableOf } from "./tables.js";
 
-const GROUPS = { scenes: "pairs of the scenes", open: "open query set", hard: "hard suite", random: "random families", close: "hard families at a distance" };
-const STUDIES = { size: "triangles", step: "step, in steps of a frame", bones: "bones", threads: "threads", thickness: "thickness, in mean edges" };
 // A thickness may be 0, which no logarithm has.
 const scaleOf = (study) => (study === "thickness" ? LINEAR : LOG);
 const distinct = (values) => [...new Set(values)];
@@ -13,8 +11,10 @@ const distinct = (values) => [...new Set(values)];
 // Joins points that lie between gaps of other series.
 const SPAN = { spanGaps: true };
 
-export function showAccuracy(study) {
-  const points = study.data.filter((point) => point.ns), groups = Object.keys(GROUPS).filter((name) => points.some((point) => point.group === name));
+export function showAccuracy(study, { looks }) {
+  const titles = Object.fromEntries(looks.groups);
+  const sumsOf = (name) => Object.entries(study.data[`group ${name}`] || {}).map(([row, sum]) => ({ group: name, row, ...sum }));
+  const points = Object.keys(titles).flatMap(sumsOf).filter((point) => point.ns), groups = distinct(points.map((point) => point.group));
   let group = groups[0];
   const wrong = (point) => (point.lost + point.invented + point.undecided) / point.queries;
   const rows = () => points.filter((point) => point.group === group);
@@ -38,8 +38,8 @@ export function showAccuracy(study) {
     };
   });
   const list = () => byId("accuracy-list").replaceChildren(tableOf(["test", "ns a query", "queries", "contacts lost", "invented", "undecided"],
-    rows().sort((a, b) => wrong(a) - wrong(b) || a.ns - b.ns).map((point) => [point.row, short(point.ns), ...[point.queries, point.lost, point.invented, point.undecided].map((n) => n.toLocaleString("en"))])));
-  radios(byId("accuracy-groups"), groups.map((name) => [name, GROUPS[name]]), (name) => {
+    rows().sort((a, b) => wrong(a) - wrong(b) || a.ns - b.ns).map((point) => [point.row, number(point.ns), ...[point.queries, point.lost, point.invented, point.undecided].map((n) => n.toLocaleString("en"))])));
+  radios(byId("accuracy-groups"), groups.map((name) => [name, titles[name]]), (name) => {
     group = name;
     choose();
   });
@@ -51,8 +51,8 @@ export function showAccuracy(study) {
   choose();
 }
 
-export function showGrowth(study) {
-  const { points, fits } = study.data, studies = Object.keys(STUDIES).filter((name) => distinct(points.filter((point) => point.study === name).map((point) => point.size)).length > 1);
+export function showGrowth(study, { looks, tables }) {
+  const { points, fits } = study.data, titles = Object.fromEntries(looks.studies), studies = Object.keys(titles).filter((name) => distinct(points.filter((point) => point.study === name).map((point) => point.size)).length > 1);
   let name = studies[0], scene = null;
   const select = byId("growth-scene");
   const rows = () => points.filter((point) => point.study === name && point.scene === scene);
@@ -60,21 +60,21 @@ export function showGrowth(study) {
     const strategies = distinct(rows().map((point) => point.strategy)), mark = (strategy) => (rows().some((point) => point.strategy === strategy && point.marked) ? "*" : "");
     return {
       data: aligned(strategies.map((strategy) => rows().filter((point) => point.strategy === strategy).map((point) => ({ x: point.size, y: point.ms })))),
-      series: strategies.map((strategy, i) => {
+      series: strategies.map((strategy) => {
         const fit = fits.find((one) => one.study === name && one.scene === scene && one.strategy === strategy);
-        return { label: fit ? `${strategy}${mark(strategy)} (grows as the power ${fit.exponent.toFixed(2)})` : strategy + mark(strategy), stroke: colourOf(strategy), dash: dashOf(strategy, i), points: { show: true, size: 6 }, ...SPAN };
+        return { label: fit ? `${strategy}${mark(strategy)} (grows as the power ${fit.exponent.toFixed(2)})` : strategy + mark(strategy), stroke: colourOf(strategy), dash: dashOf(strategy), points: { show: true, size: 6 }, ...SPAN };
       }),
-      x: { label: STUDIES[name], scale: scaleOf(name) },
+      x: { label: titles[name], scale: scaleOf(name) },
       y: { label: "ms a query", scale: LOG },
     };
   });
   const list = () => {
     const strategies = distinct(rows().map((point) => point.strategy)), sizes = distinct(rows().map((point) => point.size));
     const cell = (size, strategy) => rows().find((point) => point.size === size && point.strategy === strategy);
-    const shown = (point) => (point ? short(point.ms) + (point.marked ? "*" : "") : "–");
-    byId("growth-list").replaceChildren(tableOf([STUDIES[name], ...strategies.map((strategy) => `${strategy}, ms`)],
+    const shown = (point) => (point ? number(point.ms) + (point.marked ? "*" : "") : "–");
+    byId("growth-list").replaceChildren(tableOf([titles[name], ...strategies.map((strategy) => `${strategy}, ms`)],
       sizes.map((size) => [size.toLocaleString("en"), ...strategies.map((strategy) => shown(cell(size, strategy)))])));
-    byId("growth-note").textContent = rows().some((point) => point.marked) ? "* keeps fewer contacts than a complete row, or promises nothing from some starts" : "";
+    byId("growth-note").textContent = rows().some((point) => point.marked) ? tables.mark_note : "";
   };
   const draw = () => {
     chart.draw();
@@ -87,7 +87,7 @@ export function showGrowth(study) {
     byId("growth-studies").update(name);
     draw();
   };
-  radios(byId("growth-studies"), studies.map((one) => [one, STUDIES[one].split(",")[0]]), (chosen) => {
+  radios(byId("growth-studies"), studies.map((one) => [one, titles[one].split(",")[0]]), (chosen) => {
     name = chosen;
     choose();
   });
@@ -115,14 +115,14 @@ export function showHistory(history) {
     const order = commits(), shown = courses(), nameOf = (i) => (order[i] ? order[i].slice(0, 7) : "");
     return {
       data: aligned(shown.map((course) => course.points.map((point) => ({ x: order.indexOf(point.commit), y: point.median })))),
-      series: shown.map((course, i) => ({ label: course.row, stroke: colourOf(course.row), dash: dashOf(course.row, i), points: { show: true, size: 6 }, ...SPAN })),
+      series: shown.map((course) => ({ label: course.row, stroke: colourOf(course.row), dash: dashOf(course.row), points: { show: true, size: 6 }, ...SPAN })),
       x: { label: "commit", scale: LINEAR, range: [-0.4, order.length - 0.6], name: nameOf, values: (_, ticks) => ticks.map((tick) => (Number.isInteger(tick) ? nameOf(tick) : "")) },
       y: { label: "ms an interval", scale: LOG },
       hooks: { draw: [(plot) => shown.forEach((course) => course.changes.forEach((change) => markChange(plot, order.indexOf(change.commit), course.points[change.first].median, percent(change.ratio), colourOf(course.row))))] },
     };
   });
   const list = () => {
-    const rows = courses().flatMap((course) => course.changes.map((change) => [course.row, change.commit.slice(0, 10), short(course.points[change.first - 1].median), short(course.points[change.first].median), percent(change.ratio)]));
+    const rows = courses().flatMap((course) => course.changes.map((change) => [course.row, change.commit.slice(0, 10), number(course.points[change.first - 1].median), number(course.points[change.first].median), percent(change.ratio)]));
     byId("history-list").replaceChildren(rows.length > 0 ? tableOf(["row", "first commit of the new level", "ms before", "ms at it", "level"], rows) : element("p", "No change of level was found."));
   };
   select.addEventListener("change", () => {

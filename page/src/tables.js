@@ -13,7 +13,10 @@ export function tableOf(head, rows) {
   return table;
 }
 
-// A table in the paper's shape: columns in groups, and beneath each scene's measured figures those published.
+// Titles of lines may be Markdown.
+const plain = (text) => text.replaceAll(/[`*]/g, "");
+
+// A table as the document has it: columns in groups, and beneath each scene's measured figures those published.
 export function shapedTable({ title, legend, note, groups, columns, lines }) {
   const box = element("div"), wide = element("div", undefined, "wide"), table = element("table", undefined, "shaped");
   const named = lines.some((line) => line.kind), row = (cells) => {
@@ -36,10 +39,11 @@ export function shapedTable({ title, legend, note, groups, columns, lines }) {
   })]);
   for (const line of lines) {
     if (line.note) row([spanning("td", line.note, before + columns.length)]).className = "note";
-    row([element("td", line.scene), ...(named ? [element("td", line.kind, "text")] : []), ...line.cells.map((cell) => element("td", cell || "–"))]).className = line.kind;
+    row([element("td", plain(line.scene)), ...(named ? [element("td", line.kind, "text")] : []), ...line.cells.map((cell) => element("td", cell.replaceAll("`", "") || "–"))]).className = line.kind;
   }
   wide.append(table);
-  box.append(element("h3", title), element("p", legend, "hint"), wide);
+  if (title) box.append(element("h3", title), element("p", legend, "hint"));
+  box.append(wide);
   if (note) box.append(element("p", note, "hint"));
   return box;
 }

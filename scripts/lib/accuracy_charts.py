@@ -1,13 +1,13 @@
 """The charts of scripts/figures accuracy."""
 from charts import label_panels, log_axis, marker, matplotlib, panels, save, test_colour
-from accuracy_sums import GROUPS, base, is_sweep, sums
+from accuracy_sums import GROUPS, base
 
 NOTHING = {"color": "#e8f4e8", "zorder": 0}  # the band in which a share of zero is drawn
 
 
 def style_of(record):
     """Colour and marker of a row and of its variants."""
-    bases = list(dict.fromkeys(base(row["name"]) for row in record["rows"]))
+    bases = list(dict.fromkeys(base(row["name"]) for row in record.rows))
     return {b: {"color": test_colour(b), "marker": marker(b)} for b in bases}
 
 
@@ -41,19 +41,19 @@ def symbol(label, **look):
 def draw_pareto(record, folder, pdf):
     """Wrong answers, misses and false alarms together, against mean time; an undecided answer counts as wrong."""
     styles = style_of(record)
-    groups = [(g, title) for g, title in GROUPS.items() if g != "random" and sums(record, lambda w: w["group"] == g)]
+    groups = [(g, title) for g, title in GROUPS.items() if g != "random" and record.sums(f"group {g}")]
     figure, cells = panels(len(groups) + 1, height=3.1, title_height=0)
     for axes, (group, title) in zip(cells, groups):
-        rows = sums(record, lambda w: w["group"] == group)
-        shares = {n: (r.wrong + r.undecided) / r.queries for n, r in rows.items()}
+        rows = record.sums(f"group {group}")
+        shares = {n: (r.lost + r.invented + r.undecided) / r.queries for n, r in rows.items()}
         one = max(1 / r.queries for r in rows.values())
         floor = min([share for share in shares.values() if share > 0] + [one]) / 5
-        points = {n: (r.ns(), max(shares[n], floor)) for n, r in rows.items()}
+        points = {n: (r.ns, max(shares[n], floor)) for n, r in rows.items()}
         draw_front(axes, points)
         for name, (x, y) in points.items():
             look = styles[base(name)]
-            axes.plot([x], [y], ls="", ms=4.5 if is_sweep(record, name) else 7.5, zorder=3,
-                      mfc="white" if rows[name].false_negatives else look["color"], **look)
+            axes.plot([x], [y], ls="", ms=4.5 if record.is_sweep(name) else 7.5, zorder=3,
+                      mfc="white" if rows[name].lost else look["color"], **look)
         draw_floor(axes, floor, [y for _, y in points.values()], "none wrong")
         axes.set_xscale("log")
         axes.margins(x=0.15)
@@ -87,20 +87,20 @@ def set_scale(axes, title):
 def draw_tolerance(record, folder, pdf):
     """Time, false alarms, misses and undecided answers against the tolerance, a panel each."""
     styles = style_of(record)
-    tolerances = {row["name"]: row["tolerance"] for row in record["rows"] if "tolerance" in row}
+    tolerances = {row["name"]: row["tolerance"] for row in record.rows if "tolerance" in row}
     # Rows of a sweep see the first queries alone, so the others are left out unless they belong to it.
-    rows = sums(record, lambda w: w["group"] in ("hard", "open"))
+    rows = record.sums("sweep")
     sweeps = {}
     for one in dict.fromkeys(base(name) for name in tolerances):
         names = sorted((n for n in tolerances if base(n) == one and n in rows and tolerances[n] > 0 and
-                        is_sweep(record, n) and ":" not in n), key=lambda n: tolerances[n])
+                        record.is_sweep(n) and ":" not in n), key=lambda n: tolerances[n])
         if len(names) > 1:
             sweeps[one] = names
     if not sweeps:
         return False
     figure, cells = panels(4)
-    quantities = (("time", lambda r: r.ns()), ("false alarms", lambda r: r.false_positives / r.queries),
-                  ("misses", lambda r: r.false_negatives / r.queries), ("undecided", lambda r: r.undecided / r.queries))
+    quantities = (("time", lambda r: r.ns), ("false alarms", lambda r: r.invented / r.queries),
+                  ("misses", lambda r: r.lost / r.queries), ("undecided", lambda r: r.undecided / r.queries))
     labelled = []
     for axes, (title, value) in zip(cells, quantities):
         ends = []
@@ -122,15 +122,15 @@ def draw_tolerance(record, folder, pdf):
 def draw_hardness(record, folder, pdf):
     """Time, wrong answers and undecided answers against the hardness, a panel each."""
     styles = style_of(record)
-    hardnesses = sorted({w["hardness"] for w in record["workloads"] if "hardness" in w}, reverse=True)
+    hardnesses = sorted({w["hardness"] for w in record.raw["workloads"] if "hardness" in w}, reverse=True)
     if len(hardnesses) < 2:
         return False
-    by = {h: sums(record, lambda w: w.get("hardness") == h) for h in hardnesses}
-    names = [row["name"] for row in record["rows"] if not row["sweep"]]
+    by = {h: record.sums(f"hardness {h:g}") for h in hardnesses}
+    names = [row["name"] for row in record.rows if not row["sweep"]]
     figure, cells = panels(3, columns=1, title_height=0)
     figure.set_size_inches(8, 8)
     labelled = []
-    for axes, (title, value) in zip(cells, (("time", lambda r: r.ns()), ("wrong", lambda r: r.wrong / r.queries),
+    for axes, (title, value) in zip(cells, (("time", lambda r: r.ns), ("wrong", lambda r: (r.lost + r.invented) / r.queries),
                                             ("undecided", lambda r: r.undecided / r.queries))):
         ends = []
         for name in names:

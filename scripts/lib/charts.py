@@ -19,34 +19,13 @@ import matplotlib.ticker  # noqa: E402
 import numpy as np  # noqa: E402
 from PIL import Image  # noqa: E402
 
-# Okabe and Ito's colours, which colour-blind readers can tell apart, and a few more for rows that are seldom drawn.
-BLACK, ORANGE, BLUE, GREEN, PINK, RED, SKY, OLIVE, GREY = (
-    "#000000", "#E69F00", "#0072B2", "#009E73", "#CC79A7", "#D55E00", "#56B4E9", "#999933", "#888888")
-STRATEGIES = {  # colour and dash by name; a family has one colour
-    "base": (BLACK, "-"), "brute": (GREY, ":"), "aabb": (SKY, "-"), "mcd": (ORANGE, "-"), "selfccd": (GREEN, "-"),
-    "embree": (SKY, "--"), "cgal_boxes": (SKY, ":"), "fcl": (GREY, "--"),
-    "rvbc": (PINK, "-"), "rvbc_relative": (PINK, "--"),
-    "drvbc": (BLUE, "-"), "drvbc_unrefined": (BLUE, "--"), "drvbc_unmerged": (BLUE, ":"), "drvbc_unrelative": (BLUE, "-."),
-    "drvbc_uncached": (BLUE, (0, (5, 1, 1, 1))), "drvbc_one_vertex": (BLUE, (0, (1, 3))),
-    "drvbc_bones": (SKY, "-."), "drvbc_pieces": (SKY, (0, (5, 1, 1, 1))),
-    "drvbc_fast": (RED, "-"), "drvbc_fast_all": (RED, (0, (8, 2))), "drvbc_fast_complete": (RED, "--"),
-    "drvbc_fast_one_cover": (OLIVE, "-"),
-    "drvbc_fast_two_covers": (OLIVE, "--"), "drvbc_fast_swept_bounds": (OLIVE, ":"), "drvbc_fast_no_stars": (OLIVE, "-."),
-    "drvbc_fast_no_planes": (OLIVE, (0, (5, 1, 1, 1))), "drvbc_fast_bones": (RED, "-."), "drvbc_fast_no_bones": (RED, ":"),
-    "drvbc_fast_whole_steps": (OLIVE, (0, (1, 2))),
-    "drvbc_fast_fixed_covers": (OLIVE, (0, (3, 1, 1, 1, 1, 1))), "drvbc_fast_fixed_covers_complete": (RED, (0, (5, 1, 1, 1))),
-}
-TESTS = {  # elementary tests
-    "newton": BLACK, "newton_float": GREY, "filtered_exact": RED, "exact": PINK, "cubic": ORANGE, "inclusion": BLUE,
-    "additive": GREEN, "fcl": SKY,
-}
+from looks import LOOKS  # noqa: E402
+
+RED = "#D55E00"
+STRATEGIES, TESTS, STAGES, FIRST_SHOWN = LOOKS["strategies"], LOOKS["tests"], dict(LOOKS["stages"]), LOOKS["first"]
+COLOURS = list(dict.fromkeys([look["colour"] for look in STRATEGIES.values()] + list(TESTS.values())))
 MARKERS = "osD^vPX*<>h"
-COLOURS = (BLACK, ORANGE, BLUE, GREEN, PINK, RED, SKY, OLIVE, "#882255", "#44AA99")
-STAGES = {"refit": "#999999", "rv_update": SKY, "traversal": ORANGE, "elementary": BLUE}
-START_TEST = "embedding"  # a stage outside the query: the exact test whether the start is embedded
-# Which rows a chart shows when there are more than MOST_CURVES.
-FIRST_SHOWN = ("base", "aabb", "mcd", "selfccd", "rvbc", "drvbc", "drvbc_fast", "drvbc_fast_complete")
-MOST_CURVES = 8
+MOST_CURVES = 8  # of a chart, unless all are asked for
 
 
 def _of_unknown(name, choices):
@@ -55,8 +34,8 @@ def _of_unknown(name, choices):
 
 def line_style(strategy):
     """Colour and dash of a strategy; a row such as "base --first" looks like its strategy."""
-    colour, dash = STRATEGIES.get(strategy.split(" ")[0], (_of_unknown(strategy, COLOURS), "-"))
-    return {"color": colour, "ls": ":" if " --first" in strategy else dash}
+    look = STRATEGIES.get(strategy.split(" ")[0], {"colour": _of_unknown(strategy, COLOURS), "dash": []})
+    return {"color": look["colour"], "ls": ":" if " --first" in strategy else (0, look["dash"]) if look["dash"] else "-"}
 
 
 def marker(name):

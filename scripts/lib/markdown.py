@@ -12,18 +12,9 @@ def table(head, rows, text_columns=1):
 
 
 def number(value):
-    """Four significant digits, or all digits of a whole number."""
-    return f"{value:.0f}" if value == int(value) else f"{value:.4g}"
-
-
-def with_interval(value, interval, text=number):
-    """"4.4 [3.8, 4.5]"; the value alone where there is no interval."""
-    return text(value) + (f" [{text(interval[0])}, {text(interval[1])}]" if interval else "")
-
-
-def short(value):
-    """Three significant digits; a dash for nothing."""
-    return "–" if value is None else f"{value:.3g}" if value < 1000 else f"{value:,.0f}"
+    """A figure as `cscd` writes it (figure_text in core/base/number_text.h): three significant digits, all digits before the point,
+    commas between thousands; a dash for nothing."""
+    return "–" if value is None else f"{value:,.0f}" if abs(value) >= 999.5 else f"{value:.3g}"
 
 
 def picture(name, title):

@@ -1,5 +1,5 @@
 """The small table of a record of `scripts/record motion`, for its own page and for the page of characters."""
-from markdown import short, table
+from markdown import number, table
 
 MOST_RATIO = 5  # the aim: so many times a straight query, at most
 
@@ -31,7 +31,7 @@ def rate_table(record):
         every = [*characters, *of_scene.values()]
         ratios += [value for value in (ratio([row]) for row in of_scene.values()) if value]
         rows.append([str(fps), f"{sum(row['asked'] for row in every):,}", str(sum(len(row["differ"]) for row in every)),
-                     *map(short, [whole_ratio(characters), ratio(characters), ratio(list(of_scene.values())), *(ratio([row]) for row in of_scene.values())])])
+                     *map(number, [whole_ratio(characters), ratio(characters), ratio(list(of_scene.values())), *(ratio([row]) for row in of_scene.values())])])
     lines = table(["frames a second", "intervals asked", "answers that differ", "characters, whole query", "characters", "scenes", *scenes], rows)
     missed = sum(value > MOST_RATIO for value in ratios)
     return lines + ["", "A whole query takes so many times longer with `--true-motion`, preparation and intervals that start crossed included. The columns after "

@@ -1,4 +1,5 @@
 """Reading what `cscd` writes, and refusing what it did not write."""
+import functools
 import gzip
 import json
 import pathlib
@@ -6,7 +7,7 @@ import re
 import sys
 import zlib
 
-from script import refuse
+from script import answer_of, refuse
 
 
 def read_json(path):
@@ -54,18 +55,12 @@ def read_records(paths, schema, command):
     return records
 
 
-MARK_NOTE = "* did not keep all contacts of the verified intervals, or promises nothing from some of their starts"
-
-
-def mark_of(record, strategy):
-    """What stands behind a strategy's times: "*" where MARK_NOTE holds of it, as in the tables (bench/tables/quantity.h)."""
-    verification = record["verification"]
-    for row in verification["strategies"]:
-        if row["name"] == strategy:
-            lost = row["contacts_found"] < row["contacts_expected"]
-            unpromised = row["guarantee"] in ("first_contact", "all_from_embedded") and verification["unembedded"]
-            return "*" if lost or unpromised else ""
-    return ""
+@functools.cache
+def document_of(program, *paths):
+    """The document of figures that `cscd report` makes of records: texts, marks and sums that pages and charts place."""
+    if not program.exists():
+        refuse(f"{program}: is not there; build it with scripts/reproduce, or name another with --program")
+    return answer_of(program, "report", *paths)
 
 
 def plain(name):

@@ -107,14 +107,14 @@ def page():
     return HEAD + "\n" + "\n".join(table(["date", "kind", "machine", "commit", "pages"], rows, text_columns=5)) + "\n" + "".join(missing)
 
 
-def scale_pages():
+def scale_pages(program):
     """By name, how the page of each record of `cscd scale` is made of the record and of the charts beside it."""
     pages = {}
     for path in tracked_files("results"):
         if path.name == "scale.json.gz":
             drawn = {chart.stem.removeprefix("scale-") for chart in path.parent.glob("scale-*.png")}
             name = (path.parent / "scale.md").relative_to(ROOT).as_posix()
-            pages[name] = lambda path=path, drawn=drawn: scale_page(Record(read_json(path)), drawn)
+            pages[name] = lambda path=path, drawn=drawn: scale_page(Record(path, program), drawn)
     return pages
 
 

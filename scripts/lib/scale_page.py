@@ -1,6 +1,6 @@
 """The page of how cost grows, from a record of `cscd scale`."""
-from markdown import built, picture, short, table
-from scale_record import FIRST, MARK, Record, count, lacks, mark, per_triangle, row, series, speedups, stage
+from markdown import built, number, picture, table
+from scale_record import FIRST, MARK, count, mark, per_triangle, row, series, speedups, stage
 
 LONG = 3  # the step, in frames, at which time is to be nearly that of one frame
 MANY = 16  # threads that the page foresees
@@ -17,7 +17,7 @@ QUANTITIES = (("ms", stage("total")), ("preparation, ms", lambda prepared, asked
 
 def marked(subject, lengths, name):
     """The mark of a ratio of times of steps of these lengths."""
-    return "".join(sorted({mark(subject, step, name) for step in subject["steps"] if step["step"] in lengths}))
+    return "".join(sorted({mark(step, name) for step in subject["steps"] if step["step"] in lengths}))
 
 
 def bounded(ratio, mark_of=""):
@@ -54,7 +54,7 @@ def size_part(record, drawn):
         for title, value in QUANTITIES:
             pairs = [(row(largest[scene], name), row(largest[scene]["steps"][0], name)) for scene in scenes]
             lines.append([f"`{name}`: {title}"] + [
-                short(value(*pair)) + (mark(largest[scene], largest[scene]["steps"][0], name) if title == "ms" else "") if all(pair) else "–"
+                number(value(*pair)) + (mark(largest[scene]["steps"][0], name) if title == "ms" else "") if all(pair) else "–"
                 for scene, pair in zip(scenes, pairs)])
     text += ["At the largest size:", ""]
     text += table(["", *(f"{scene}, {largest[scene]['triangles']:,}" for scene in scenes)], lines) + [""]
@@ -89,8 +89,8 @@ def step_part(record, drawn):
     for scene in scenes:
         by = {length: row(step, name) for length, step in by_length[scene].items()}
         for key in ("bvot", "pctp"):
-            lines.append([f"{scene}: {key.upper()}"] + [short(by[s]["counts"].get(key)) if s in by else "–" for s in steps])
-        lines.append([f"{scene}: ms"] + [short(by[s].get("ms", {}).get("total")) + mark(record.of("step", scene)[0], by_length[scene][s], name)
+            lines.append([f"{scene}: {key.upper()}"] + [number(by[s]["counts"].get(key)) if s in by else "–" for s in steps])
+        lines.append([f"{scene}: ms"] + [number(by[s].get("ms", {}).get("total")) + mark(by_length[scene][s], name)
                                          if s in by else "–" for s in steps])
     text += [f"`{name}`, step by step:", ""] + table(
         ["step"] + [f"{length:g}" for length in steps], lines) + [""]
@@ -109,7 +109,7 @@ def bones_part(record, drawn):
             for title, value in QUANTITIES:
                 found = dict(series(subjects, name, value, "bones"))
                 lines.append([f"`{name}`: {title}"] + [
-                    short(found.get(s["bones"], 0)) + (mark(s, s["steps"][0], name) if title == "ms" else "") for s in subjects])
+                    number(found.get(s["bones"], 0)) + (mark(s["steps"][0], name) if title == "ms" else "") for s in subjects])
         text += table([f"{scene}, bones"] + [str(s["bones"]) for s in subjects], lines) + [""]
     return text + drawing(drawn, "bones", "time against bones")
 
@@ -147,11 +147,11 @@ def threads_part(record, drawn):
             for key, title in (("total", "ms"), *STAGES):
                 found = dict(series(subjects, name, stage(key), "threads"))
                 if found:
-                    lines.append([f"`{name}`: {title}"] + [short(found.get(s["threads"])) + mark(s, s["steps"][0], name) for s in subjects])
+                    lines.append([f"`{name}`: {title}"] + [number(found.get(s["threads"])) + mark(s["steps"][0], name) for s in subjects])
             found = speedups(record, scene, name)
-            lines.append([f"`{name}`: times as fast as on one"] + [short(found.get(s["threads"])) for s in subjects])
+            lines.append([f"`{name}`: times as fast as on one"] + [number(found.get(s["threads"])) for s in subjects])
             if foreseen := predicted(subjects, name):
-                beyond.append([f"`{name}` on {scene}", short(foreseen)])
+                beyond.append([f"`{name}` on {scene}", number(foreseen)])
         text += table([f"{scene}, {subjects[0]['triangles']:,} triangles, threads"] +
                       [str(s["threads"]) for s in subjects], lines) + [""]
     if beyond:
@@ -163,7 +163,7 @@ def threads_part(record, drawn):
 def contacts_mark(record, scene, name):
     """The mark of a ratio of the times with and without contacts."""
     subject = record.of("contacts", scene)[0]
-    return "".join(sorted({mark(subject, step, name) for step in subject["steps"]}))
+    return "".join(sorted({mark(step, name) for step in subject["steps"]}))
 
 
 def contacts_part(record, drawn):
@@ -197,7 +197,7 @@ def contacts_part(record, drawn):
                              ("PCTP", lambda r: r["counts"].get("pctp"))):
             def cell(scene, step, value=value, is_time="ms" in title):
                 own = row(step, name)
-                return short(value(own)) + (mark(record.of("contacts", scene)[0], step, name) if is_time else "") if own else "–"
+                return number(value(own)) + (mark(step, name) if is_time else "") if own else "–"
 
             lines.append([f"`{name}`: {title}"] + [" → ".join(cell(scene, step) for step in steps[scene]) for scene in scenes])
     return text + ["Without → with:", ""] + table([""] + scenes, lines) + [""]
@@ -226,11 +226,11 @@ def thickness_part(record):
                     cells.append("–")
                     continue
                 ratio = record.thickness.get((scene, name, thickness))
-                cells.append(short(own["ms"]["total"]) + (mark(subject, step, name))
+                cells.append(number(own["ms"]["total"]) + mark(step, name)
                              + (f" ({ratio['ratio']:.2f})" if ratio else "")
-                             + (f", {unit['ms']['total'] / own['ms']['total']:.3g} times" if name in others and unit and "ms" in unit else ""))
+                             + (f", {number(unit['ms']['total'] / own['ms']['total'])} times" if name in others and unit and "ms" in unit else ""))
             pairs = row(step, names[-1])
-            lines.append(cells + [short(pairs["counts"].get("contacts")) if pairs and pairs["intervals"] else "–"])
+            lines.append(cells + [number(pairs["counts"].get("contacts")) if pairs and pairs["intervals"] else "–"])
     head = ["scene", "thickness", "clear starts", "with close pairs", *(f"`{name}`" for name in names), f"close pairs, `{names[-1]}`"]
     return text + table(head, lines) + [""]
 
@@ -241,9 +241,9 @@ def slower(mine, theirs):
     return min(of[0]) > max(of[1])
 
 
-def time_of(subject, step, own):
+def time_of(step, own):
     """What a row takes in a step, with its mark."""
-    return f"{own['ms']['total']:.3g}{mark(subject, step, own['name'])}"
+    return number(own["ms"]["total"]) + mark(step, own["name"])
 
 
 def losses(record):
@@ -270,7 +270,7 @@ def losses(record):
                     theirs = row(subject["steps"][0], other)
                     if mine and theirs and "ms" in mine and "ms" in theirs and slower(mine, theirs):
                         found.append(f"{scene} with {subject['triangles']:,} triangles: `{name}` takes "
-                                     f"{time_of(subject, subject['steps'][0], mine)} ms, `{other}` {time_of(subject, subject['steps'][0], theirs)} ms.")
+                                     f"{time_of(subject['steps'][0], mine)} ms, `{other}` {time_of(subject['steps'][0], theirs)} ms.")
     for scene in record.scenes("step"):
         for name in record.names("step")[:1]:
             ratio = record.ratios.get((scene, name, LONG))
@@ -281,7 +281,7 @@ def losses(record):
                 best = min((r for r in step["strategies"] if "ms" in r), key=lambda r: r["ms"]["total"], default=None)
                 if mine and best and "ms" in mine and slower(mine, best):
                     found.append(f"{scene} at {step['step']:g} frame steps: `{best['name']}` is faster than `{name}`, "
-                                 f"{time_of(record.of('step', scene)[0], step, best)} against {time_of(record.of('step', scene)[0], step, mine)} ms.")
+                                 f"{time_of(step, best)} against {time_of(step, mine)} ms.")
     for scene in record.scenes("contacts"):
         name = record.of("contacts", scene)[0]["strategies"][0]["name"]
         for asked in (name, name + FIRST):
@@ -294,8 +294,8 @@ def losses(record):
             asked_alike = [r for r in step["strategies"] if "ms" in r and not r["name"].endswith(FIRST)]
             best = min(asked_alike, key=lambda r: r["ms"]["total"], default=None)
             if mine and best and "ms" in mine and slower(mine, best):
-                found.append(f"{step['scene']}: `{best['name']}` is faster than `{name}`, {time_of(record.of('contacts', scene)[0], step, best)} "
-                             f"against {time_of(record.of('contacts', scene)[0], step, mine)} ms.")
+                found.append(f"{step['scene']}: `{best['name']}` is faster than `{name}`, {time_of(step, best)} "
+                             f"against {time_of(step, mine)} ms.")
     for scene in record.scenes("bones"):
         law = record.fit("bones", scene, record.names("bones")[0], "total")
         if law and law["exponent"] > 0.5:
@@ -336,7 +336,7 @@ def mark_part(record):
             where = f"{subject['study']}, {step['scene']}" + (
                 f", thickness {step['thickness']:g}" if "thickness" in step else f", step {step['step']:g}" if subject["study"] == "step" else "") + (
                 f", {subject['triangles']:,} triangles" if subject["study"] == "size" else "")
-            rows = [f"`{own['name']}` ({text})" for own in step["strategies"] if "ms" in own and (text := lacks(subject, step, own["name"]))]
+            rows = [f"`{own['name']}` ({text})" for own in step["strategies"] if "ms" in own and (text := step["lacking"].get(own["name"]))]
             lines += [f"- {where}: {', '.join(rows)}"] if rows else []
     if not lines:
         return []

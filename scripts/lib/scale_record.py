@@ -1,11 +1,18 @@
 """What pages and charts ask of a record of `cscd scale`."""
+from records import document_of, read_record
+
+SCHEMA = "cscd.scale/1"
 
 
 class Record:
-    """Subjects by study and scene, and what is asked of them."""
+    """Subjects by study and scene, and what is asked of them. Each step has `lacking`: by row, what its answers lack, as the document of
+    figures says."""
 
-    def __init__(self, record):
-        self.raw = record
+    def __init__(self, path, program):
+        self.raw = record = read_record(path, SCHEMA, "cscd scale")
+        for subject, steps in zip(record["subjects"], document_of(program, path)["growth"]["data"]["shortfalls"]):
+            for step, lacking in zip(subject["steps"], steps):
+                step["lacking"] = lacking
         self.fits = {(f["study"], f["scene"], f["strategy"], f["quantity"]): f for f in record["fits"]}
         self.ratios = {(r["scene"], r["strategy"], r["step"]): r for r in record["step_ratios"]}
         self.contacts = {(r["scene"], r["strategy"], r["of"]): r for r in record["contact_ratios"]}
@@ -36,51 +43,15 @@ FIRST = " --first"  # ends the name of a row that is asked for the earliest cont
 MARK = "\\*"  # on a page in Markdown
 
 
-def guarantee(subject, name):
-    return next(row["guarantee"] for row in subject["strategies"] if row["name"] == name)
-
-
-def lacks(subject, step, name):
-    """What a row's answers in a step lack, in words; nothing where it keeps all contacts and promises something from every start. The record
-    says it; of an older one it follows from the contacts that the complete rows count in as many intervals."""
-    own = row(step, name)
-    if not own or not own["intervals"]:
-        return ""
-    if "shortfall" in own:
-        return own["shortfall"]
-    promise = guarantee(subject, name)
-    if promise == "complete":
-        return ""
-    starts = len(step["starts"])
-    void = starts - step.get("clear", step["embedded"]) if promise in ("first_contact", "all_from_embedded") else 0
-    found = contacts_of(own)
-    complete = [contacts_of(other) for other in step["strategies"]
-                if guarantee(subject, other["name"]) == "complete" and not other["name"].endswith(FIRST)
-                and other["intervals"] == own["intervals"]]
-    texts = []
-    if not name.endswith(FIRST) and complete and found < max(complete):
-        texts.append(f"kept {found} of {max(complete)} contacts")
-    if not name.endswith(FIRST) and not complete and step["colliding"]:
-        texts.append("may have lost contacts, as no complete row answered the same intervals")
-    if void > 0:
-        texts.append(f"promise void on {void} of {starts} intervals")
-    return "; ".join(texts)
-
-
-def contacts_of(row):
-    """All contacts that a row counted in its intervals, of which the record keeps the mean."""
-    return round(row["counts"].get("contacts", 0) * row["intervals"])
-
-
-def mark(subject, step, name):
-    """What stands behind every time of a row in a step, as the tables have it (bench/records/shortfall.h)."""
-    return MARK if lacks(subject, step, name) else ""
+def mark(step, name):
+    """What stands behind every time of a row in a step."""
+    return MARK if name in step["lacking"] else ""
 
 
 def starred(record, study, scene, name):
     """The name of a row as charts label its times: with a star where any of its steps has a mark."""
     subjects = record.of(study, scene)
-    return name + ("*" if any(mark(subject, step, name) for subject in subjects for step in subject["steps"]) else "")
+    return name + ("*" if any(mark(step, name) for subject in subjects for step in subject["steps"]) else "")
 
 
 def row(of, name):

@@ -23,6 +23,11 @@ def parser_of(description):
     return argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
+def program_option(parser):
+    """The program that makes the document of figures."""
+    parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build-release" / "cscd", help="default build-release/cscd")
+
+
 def run(main):
     """Runs a script, whose exit status is what `main` returns. A file that cannot be read or written ends it with one line."""
     try:

@@ -1,6 +1,6 @@
 """Parts of pages (measured_parts.py) whose records hold no tables: studies of their own, and the glossary."""
-from accuracy_sums import GROUPS, is_sweep, sums
-from markdown import built, short, table
+from accuracy_sums import Accuracy, GROUPS
+from markdown import built, number, table
 from motion_table import rate_table
 from records import read_json
 from scale_page import summary
@@ -13,7 +13,7 @@ def page_in(folder, up, name):
     return f"{up}{folder.relative_to(ROOT).as_posix()}/{name}"
 
 
-def motion(folders, up):
+def motion(folders, up, program):
     """How often the true motion of characters differs from straight lines, and what it costs."""
     folder = folders["motion"]
     record = read_json(folder / "motion.json.gz")
@@ -27,29 +27,29 @@ def motion(folders, up):
 SHOWN_GROUPS = ("scenes", "open", "hard")
 
 
-def accuracy(folders, up):
+def accuracy(folders, up, program):
     """What each elementary test gets wrong, and what it takes."""
     folder = folders["accuracy"]
-    record = read_json(folder / "accuracy.json.gz")
-    by_group = {group: found for group in SHOWN_GROUPS if (found := sums(record, lambda workload, group=group: workload["group"] == group))}
-    names = [row["name"] for row in record["rows"] if not is_sweep(record, row["name"])]
+    record = Accuracy(folder / "accuracy.json.gz", program)
+    by_group = {group: found for group in SHOWN_GROUPS if (found := record.sums(f"group {group}"))}
+    names = [row["name"] for row in record.rows if not row["sweep"]]
 
     def cells(found):
-        return ["–"] * 2 if found is None else [short(found.ns()), f"{found.false_negatives:,}, {found.false_positives:,}, {found.undecided:,}"]
+        return ["–"] * 2 if found is None else [number(found.ns), f"{found.lost:,}, {found.invented:,}, {found.undecided:,}"]
 
     head = ["test", *(title for group in by_group for title in (f"{GROUPS[group]}: ns a query", "lost, invented, undecided"))]
     rows = [[f"`{name}`", *(cell for found in by_group.values() for cell in cells(found.get(name)))] for name in names]
     asked = "; ".join(f"{GROUPS[group]} {one.queries:,} queries, {one.contacts:,} in contact"
                       for group, found in by_group.items() for one in [found[names[0]]])
     return "\n".join([*table(head, rows), "", f"Asked were: {asked}.",
-                      f"Measured on {built(record['environment'])}; [what to choose, with every figure]({page_in(folder, up, 'accuracy.md')})."]) + "\n"
+                      f"Measured on {built(record.raw['environment'])}; [what to choose, with every figure]({page_in(folder, up, 'accuracy.md')})."]) + "\n"
 
 
-def growth(folders, up):
+def growth(folders, up, program):
     """What a reader wants to know first of how cost grows, study by study."""
     lines = []
     for kind, folder in folders.items():
-        record = Record(read_json(folder / "scale.json.gz"))
+        record = Record(folder / "scale.json.gz", program)
         lines += [f"- {GROWTH[kind]}: [the page]({page_in(folder, up, 'scale.md')}). {' '.join(summary(record))}".rstrip()]
     return "\n".join(lines) + "\n"
 

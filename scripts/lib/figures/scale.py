@@ -17,21 +17,19 @@ bytes.
 import pathlib
 
 import scale_charts
-from records import read_record
 from scale_page import CONTACTS, page
 from scale_record import Record
-from script import made_folder, parser_of
-
-SCHEMA = "cscd.scale/1"
+from script import made_folder, parser_of, program_option
 
 
 def main():
     parser = parser_of(__doc__)
     parser.add_argument("record", type=pathlib.Path)
     parser.add_argument("--out", required=True, type=pathlib.Path, help="the folder, which is made where it is missing")
+    program_option(parser)
     parser.add_argument("--all", action="store_true", help="all rows in every chart")
     arguments = parser.parse_args()
     made_folder(arguments.out)
-    record = Record(read_record(arguments.record, SCHEMA, "cscd scale"))
+    record = Record(arguments.record, arguments.program)
     drawn = scale_charts.draw_all(record, arguments.out, arguments.all, CONTACTS)
     (arguments.out / "scale.md").write_text(page(record, drawn))

@@ -40,4 +40,4 @@ def main():
     with new_results("accuracy-smoke" if options.smoke else "accuracy") as folder:
         words = [*(SMOKE if options.smoke else FULL), *(["--set", queries] if queries else [])]
         call(cscd, "accuracy", *words, "--json", folder / "accuracy.json.gz")
-        call(ROOT / "scripts" / "figures", "accuracy", folder / "accuracy.json.gz", "--out", folder)
+        call(ROOT / "scripts" / "figures", "accuracy", folder / "accuracy.json.gz", "--program", cscd, "--out", folder)

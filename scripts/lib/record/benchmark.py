@@ -7,7 +7,7 @@ at hand, and writes their scores and a page of them to a new folder results/DATE
 from Debian's packages, and takes a quarter of an hour on 2 idle cores when everything is built.
 """
 
-from markdown import built, short, table
+from markdown import built, number, table
 from records import read_record
 from script import ROOT, call, measured_program, new_results, output_of, parser_of
 
@@ -21,8 +21,8 @@ HEAD = ["answered", "expected", "misses", "inventions", "undecided", "broken", "
 def counts(score):
     ms = score.get("milliseconds")
     return [f"{score['answered']} of {score['intervals']}", *(str(score[key]) for key in ("expected", "misses", "inventions")),
-            str(score["undecided"]), str(score["broken"]), str(score["late"]), short(score["latest"]), str(score["early"]),
-            short(score["earliest"]), short(ms and ms["median"]), short(ms and ms["sum"])]
+            str(score["undecided"]), str(score["broken"]), str(score["late"]), number(score["latest"]), str(score["early"]),
+            number(score["earliest"]), number(ms and ms["median"]), number(ms and ms["sum"])]
 
 
 def page(scores):

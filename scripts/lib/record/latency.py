@@ -16,7 +16,7 @@ import statistics
 import sys
 
 from commits import CACHE, Build, commit_named, held_lock
-from markdown import built, short, table
+from markdown import built, number, table
 from script import ROOT, SCENES, new_results, parser_of, refuse
 
 FIRST, ALL, KNOWN, EARLIEST = "drvbc_fast", "drvbc_fast_complete", "drvbc_fast_all", "drvbc_fast --first"
@@ -118,7 +118,7 @@ def page(data):
             medians = [statistics.median(values) if values else None
                        for values in ([one[name] for one in side if name in one] for side in (before, after))]
             quotients = [a[name] / b[name] for a, b in zip(before, after) if name in a and name in b]
-            rows.append([scene, *map(short, medians),
+            rows.append([scene, *map(number, medians),
                          f"{statistics.median(quotients):.2f} [{min(quotients):.2f}, {max(quotients):.2f}]" if quotients else "–"])
         lines += [f"## {title[0].upper()}{title[1:]}", "", *table(["scene", "before", "after", "before over after"], rows), ""]
     return "\n".join(lines)

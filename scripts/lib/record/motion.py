@@ -14,7 +14,7 @@ import pathlib
 import subprocess
 import tempfile
 
-from markdown import built, number, short, table
+from markdown import built, number, table
 from motion_table import rate_table, ratio
 from script import SCENES, answer_of, existing_folder, measured_program, new_results, parser_of, refuse
 
@@ -92,7 +92,7 @@ def page(record):
                    [[s["model"], str(s["triangles"]), str(row["fps"]), f"{row['asked']} of {row['intervals']}",
                      *(str(n) for n in (row["straight"]["touches"], row["true"]["touches"], row["true"]["close"], row["true"]["undecided"],
                                         len(row["differ"]))),
-                     short(row["ms"]["straight"]), short(row["ms"]["true"]), short(ratio([row]))]
+                     number(row["ms"]["straight"]), number(row["ms"]["true"]), number(ratio([row]))]
                     for s in record["subjects"] for row in s["rates"]])
     if record["left_out"]:
         lines += ["", "## Left out", "", *(f"- {one['model']}: {one['why']}" for one in record["left_out"])]

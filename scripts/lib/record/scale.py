@@ -24,4 +24,4 @@ def main():
         "a minute" if options.smoke else "an hour and a half, with 5 GB of memory," if options.largest else "half an hour")
     with new_results("scale" + "-smoke" * options.smoke + "-largest" * options.largest) as folder:
         call(cscd, "scale", *words, "--json", folder / "scale.json.gz")
-        call(ROOT / "scripts" / "figures", "scale", folder / "scale.json.gz", "--out", folder)
+        call(ROOT / "scripts" / "figures", "scale", folder / "scale.json.gz", "--program", cscd, "--out", folder)

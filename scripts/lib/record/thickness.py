@@ -28,4 +28,4 @@ def main():
     with new_results("thickness" + "-smoke" * options.smoke) as folder:
         call(cscd, "scale", "--study", "thickness", *(["--smoke"] if options.smoke else []), "--scene", ",".join(scenes), "--json",
              folder / "scale.json.gz")
-        call(ROOT / "scripts" / "figures", "scale", folder / "scale.json.gz", "--out", folder)
+        call(ROOT / "scripts" / "figures", "scale", folder / "scale.json.gz", "--program", cscd, "--out", folder)
