@@ -196,7 +196,8 @@ TEST_F(CommandLine, DrawsFiguresOfAFileIntoTheFolderAlone) {
   old["scene"]["name"] = (folder / "model.h5").string();  // as older records have it
   put("old.json", old.dump());
   for (const char* record : {"r.json", "old.json"}) {
-    const Ran ran = run("'" + scripts + "/figures' " + record + " --out figures && ls figures | head -1");
+    const Ran ran = run("'" + scripts + "/figures' " + record +
+                        " --program \"$(command -v cscd)\" --out figures && ls figures | head -1");
     EXPECT_EQ(ran.status, 0) << ran.errors;
     EXPECT_EQ(ran.out.substr(0, 5), "model") << ran.out;
     EXPECT_NE(ran.errors.find("drawn: figures/model"), std::string::npos) << ran.errors;

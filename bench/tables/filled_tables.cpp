@@ -94,8 +94,12 @@ std::vector<Filled> by_pipeline(const ordered_json& definition, const ordered_js
   std::vector<Filled> columns;
   for (const Pipeline pipeline : pipelines_of(records)) {
     Filled& filled = columns.emplace_back();
-    filled.column = {definition.value("key", ""), definition.at("title"), definition.value("unit", ""),
-                     pipeline};
+    const std::string unit = definition.value("unit", "");
+    filled.column = {definition.value("key", ""), definition.at("title"), unit, pipeline,
+                     definition.value("empty", "")};
+    if (definition.contains("head")) filled.column.head = definition["head"];
+    filled.column.group = definition.value("group", "");
+    filled.column.short_unit = definition.value("short_unit", unit);
     for (const std::string& scene : scenes)
       filled.cells.push_back(fill(definition, published, scene, records, pipeline));
   }
@@ -160,18 +164,13 @@ FilledTable filled_table(const ordered_json& definition, const ordered_json& pub
   std::vector<std::string> scenes;
   for (const Record& record : records)
     if (is_of_kind(record, kind)) add_new(scenes, record.scene.name);
-  FilledTable table{definition.at("id"),
-                    definition.value("title", ""),
-                    {},
-                    {},
-                    definition.value("legend", ""),
-                    definition.value("shape", ordered_json())};
+  FilledTable table{
+      definition.at("id"), definition.value("title", ""), definition.value("legend", ""), {}, {}};
   for (const std::string& scene : scenes) table.rows.push_back({scene, {}});
   for (const ordered_json& column : expanded_columns(definition, records)) {
     if (column.value("only", kind) != kind) continue;
     for (Filled& filled : by_pipeline(column, published, scenes, records)) {
       table.columns.push_back(std::move(filled.column));
-      table.columns.back().empty = column.value("empty", "");
       for (std::size_t row = 0; row < scenes.size(); ++row)
         table.rows[row].cells.push_back(std::move(filled.cells[row]));
     }

@@ -27,6 +27,10 @@ struct Column {
   // has it.
   std::optional<Pipeline> pipeline = Pipeline::vectorised;
   std::string empty = {};  // what stands in a list where there is no figure
+  // How people read it (bench/tables/shaped_table.h): a column without a head is for machines and for the
+  // report's page alone.
+  std::optional<std::string> head = std::nullopt;
+  std::string group = {}, short_unit = {};
 };
 // "today", "published", or "both".
 std::string_view pipeline_text(const Column& column);
@@ -37,13 +41,9 @@ struct Row {
 };
 
 struct FilledTable {
-  std::string id, title;
+  std::string id, title, legend;
   std::vector<Column> columns;
   std::vector<Row> rows;
-  // How people read it (bench/tables/shaped_table.h); `shape` is null for a table that only machines and the
-  // report's page show.
-  std::string legend;
-  nlohmann::ordered_json shape;
 };
 
 // The text with every `what` replaced.

@@ -107,7 +107,9 @@ json record_json(const Record& record, const std::string& file) {
   return {{"scene", record.scene.name},
           {"pipeline", to_string(record.pipeline)},
           {"file", file},
+          {"own", !record.scene.path.empty()},  // a user's own scene, whatever its name
           {"counted_intervals", record.counted_intervals},
+          {"colliding", record.verification.colliding},
           {"strategies", std::move(strategies)}};
 }
 

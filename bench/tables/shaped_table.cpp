@@ -86,22 +86,31 @@ void add_lines(const std::string& name, const std::vector<std::vector<Figure>>& 
 
 ShapedTable shaped(const FilledTable& table, std::span<const Record> records, bool intervals) {
   ShapedTable out{table.id, table.title, table.legend, "scene", {}, {}, {}};
-  for (const ordered_json& group : table.shape) {
-    out.groups.push_back({group.at("title"), group.at("columns").size()});
-    for (const ordered_json& column : group.at("columns"))
-      out.columns.push_back({column.at("head"), column.at("unit")});
+  std::vector<std::vector<std::string>> keys;  // of each column
+  std::string last;
+  for (const Column& column : table.columns) {
+    if (!column.head || column.key == last) continue;  // the same in the other pipeline
+    last = column.key;
+    if (column.head->empty()) {
+      keys.back().push_back(column.key);
+      continue;
+    }
+    if (out.groups.empty() || out.groups.back().title != column.group)
+      out.groups.push_back({column.group, 0});
+    ++out.groups.back().columns;
+    out.columns.push_back({*column.head, column.short_unit});
+    keys.push_back({column.key});
   }
   for (const Pipeline pipeline : {Pipeline::published, Pipeline::vectorised})
     for (const Row& row : table.rows) {
       const bool has_published = find_record(records, row.scene, Pipeline::published) != nullptr;
       if (has_published != (pipeline == Pipeline::published)) continue;
       std::vector<std::vector<Figure>> cells;
-      for (const ordered_json& group : table.shape)
-        for (const ordered_json& column : group.at("columns")) {
-          std::vector<Figure>& figures = cells.emplace_back();
-          for (const std::string key : column.at("keys"))
-            figures.push_back(figure_of(find_cell(table, row, key, pipeline), column.at("keys").size() > 1));
-        }
+      for (const std::vector<std::string>& of_column : keys) {
+        std::vector<Figure>& figures = cells.emplace_back();
+        for (const std::string& key : of_column)
+          figures.push_back(figure_of(find_cell(table, row, key, pipeline), of_column.size() > 1));
+      }
       add_lines(row.scene, cells, intervals, pipeline == Pipeline::vectorised, out);
     }
   return out;
@@ -182,7 +191,6 @@ std::vector<ShapedTable> shaped_tables(std::span<const FilledTable> tables, std:
                                        bool intervals) {
   std::vector<ShapedTable> out;
   for (const FilledTable& table : tables) {
-    if (table.shape.is_null()) continue;
     ShapedTable one = shaped(table, records, intervals);
     if (has_measured(one)) out.push_back(std::move(one));
   }

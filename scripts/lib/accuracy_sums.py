@@ -5,7 +5,6 @@ from looks import LOOKS
 from records import document_of, read_record
 
 GROUPS = dict(LOOKS["groups"])
-CLASSES = ("far", "near", "contact")
 
 
 class Accuracy:

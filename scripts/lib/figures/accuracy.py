@@ -4,17 +4,15 @@
   scripts/figures accuracy RECORD.json.gz --pdf --out FOLDER      for a paper
 
 accuracy.md            a page: this much truth costs this much time, with what to choose for what
-accuracy.csv           every row on every workload
 accuracy-pareto        wrong answers against time, row by row, Pareto front marked
 accuracy-tolerance     time, false alarms, misses and undecided answers against the tolerance
 accuracy-hardness      time, wrong and undecided answers against hardness
 The figures are PNG files, and with --pdf also PDF files whose text is text; the same record gives the same bytes.
 """
-import csv
 import pathlib
 
 import accuracy_charts
-from accuracy_sums import CLASSES, GROUPS, Accuracy
+from accuracy_sums import GROUPS, Accuracy
 from markdown import built, number, picture, table
 from script import made_folder, parser_of, program_option
 
@@ -193,23 +191,6 @@ def family_table(record):
              "`cscd list families` tells each family's story.", ""] + table(["family"] + names, lines) + [""])
 
 
-def write_csv(record, path):
-    keys = ["queries", "contacts", "false_negatives", "false_positives", "undecided_contacts", "undecided_apart"]
-    with path.open("w", newline="") as file:
-        out = csv.writer(file, lineterminator="\n")
-        out.writerow(["group", "name", "kind", "hardness", "row"] + keys + ["fp_distance_median", "fp_distance_largest",
-                     "time_p99", "time_early", "time_late"] + [f"ns_{c}" for c in CLASSES])
-        for w in record.raw["workloads"]:
-            for row in w["rows"]:
-                if not row["queries"]:
-                    continue
-                distance, error, ns = (row.get(k, {}) for k in ("false_positive_distance", "time_error", "ns"))
-                out.writerow([w["group"], w["name"], w["kind"], w.get("hardness", ""), row["row"]] +
-                             [row[k] for k in keys] + [distance.get(k, "") for k in ("median", "largest")] +
-                             [error.get(k, "") for k in ("p99", "largest_early", "largest_late")] +
-                             [round(ns[c]["median"], 1) if c in ns else "" for c in CLASSES])
-
-
 def main():
     parser = parser_of(__doc__)
     parser.add_argument("record", type=pathlib.Path)
@@ -220,5 +201,4 @@ def main():
     made_folder(arguments.out)
     record = Accuracy(arguments.record, arguments.program)
     drawn = accuracy_charts.draw_all(record, arguments.out, arguments.pdf)
-    write_csv(record, arguments.out / "accuracy.csv")
     (arguments.out / "accuracy.md").write_text(page(record, drawn))

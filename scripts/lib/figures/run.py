@@ -6,17 +6,17 @@
 For every scene: SCENE-bvot (the paper's Figure 11) and SCENE-pctp (Figure 12), with the paper's four curves (Base, MCD, RVBC, DRVBC) or
 those that --strategy names, and beside them the paper's means. Counters are the same in both pipelines.
 
-RECORDS are files, or folders, in which only records of a run are read. Every figure is a PNG and a PDF file whose text is text; the same
+RECORDS are files, or folders, in which records of other kinds are passed over. Every figure is a PNG and a PDF file whose text is text; the same
 records give the same bytes. Times of stages are on the page that `cscd report` writes.
 """
 import pathlib
+import re
 
 from charts import label_ends, line_style, plt, save, spans_decades
 from published import PAPER, over
-from records import plain, read_records
-from script import made_folder, parser_of, refuse
+from records import document_of
+from script import made_folder, parser_of, program_option, refuse
 
-SCHEMA = "cscd.run/2"
 PAPERS = ("base", "mcd", "rvbc", "drvbc")  # the curves of the paper's Figures 11 and 12
 DISPLAYED = {"base": "Base", "mcd": "MCD", "rvbc": "RVBC", "drvbc": "DRVBC"}  # as the paper calls them
 
@@ -41,12 +41,12 @@ def draw_counter(record, counter, label, folder, strategies):
     names = [strategy for strategy in strategies if strategy in rows]
     if not names:
         return
-    scene = plain(record["scene"]["name"])
-    means = {strategy: mean for strategy in names if not record["scene"].get("path")
+    scene = plain(record["scene"])
+    means = {strategy: mean for strategy in names if not record["own"]
              and (mean := paper_mean(scene, counter, strategy)) is not None}
     figure, axes = plt.subplots(figsize=(7, 3.4))
     intervals = record["counted_intervals"]
-    for touching in record["verification"]["colliding"]:
+    for touching in record["colliding"]:
         axes.axvspan(touching - 0.5, touching + 0.5, color="#D55E00", alpha=0.12, lw=0, zorder=0)
     for strategy in names:
         axes.plot(intervals, rows[strategy], lw=1.3, **line_style(strategy))
@@ -55,7 +55,7 @@ def draw_counter(record, counter, label, folder, strategies):
         axes.set_yscale("symlog" if min(values) == 0 else "log")
     if min(values) == 0:
         axes.set_ylim(bottom=0)
-    axes.set_xlabel("interval" + ("; shaded: verified intervals with contacts" if record["verification"]["colliding"] else ""))
+    axes.set_xlabel("interval" + ("; shaded: verified intervals with contacts" if record["colliding"] else ""))
     axes.set_ylabel(label)
     axes.set_title(scene, fontsize=9)
     first, last = intervals[0], max(intervals[-1], intervals[0] + 1)
@@ -73,28 +73,22 @@ def draw_counter(record, counter, label, folder, strategies):
     save(figure, folder, f"{scene}-{counter}", pdf=True)
 
 
-def read(paths):
-    records = read_records(paths, SCHEMA, "cscd run")
-    for record in records:
-        if not record["verification"]["ok"]:
-            refuse(f"a record of {plain(record['scene']['name'])}: its verification failed, so it holds no times; mend the strategy "
-                   "and run again")
-    return records
+def plain(name):
+    """A scene's name as part of a file's name. A record may call its scene anything, even by a path."""
+    stem = name.rsplit("/", 1)[-1]
+    return re.sub(r"[^\w.-]|^[.-]", "_", stem)[:64] or "unnamed"
 
 
 def main():
     parser = parser_of(__doc__)
     parser.add_argument("records", nargs="+", type=pathlib.Path, metavar="RECORDS")
     parser.add_argument("--out", required=True, type=pathlib.Path, help="the folder, which is made where it is missing")
+    program_option(parser)
     parser.add_argument("--strategy", help="the curves, with commas between; default " + ",".join(PAPERS))
     arguments = parser.parse_args()
     folder = made_folder(arguments.out)
-    scenes = {}
-    for record in sorted(read(arguments.records), key=lambda record: record.get("pipeline", "today") == "today"):
-        scene, other = plain(record["scene"]["name"]), scenes.get(plain(record["scene"]["name"]))
-        if other and other.get("pipeline") == record.get("pipeline"):
-            refuse(f"two records are both of a scene {scene}, and their figures would be one; draw one of them at a time")
-        scenes[scene] = record  # that of the pipeline `today`, which has more rows
+    records = document_of(arguments.program, *arguments.records)["records"]
+    scenes = {record["scene"]: record for record in sorted(records, key=lambda record: record["pipeline"] == "today")}  # has more rows
     chosen = arguments.strategy.split(",") if arguments.strategy else PAPERS
     for name in chosen if arguments.strategy else ():
         if not any(s["name"] == name for record in scenes.values() for s in record["strategies"]):
