@@ -23,11 +23,6 @@ def draw_curve(axes, points, label, law=None, **look):
     return [(*points[-1], label, look["color"])]
 
 
-def triangle_ticks(axes, record, scene):
-    sizes = sorted({s["triangles"] for s in record.of("size", scene)})
-    ticks(axes, sizes, lambda n: f"{n / 1e6:.1f} M" if n >= 1e6 else f"{n / 1e3:.0f} k")
-
-
 def draw_scenes(scenes, folder, name, draw, x_label, y_label, title=""):
     """One panel a scene. `draw(axes, scene)` draws its curves, sets its axes, and returns the curves' ends."""
     if not scenes:
@@ -47,66 +42,59 @@ def draw_scenes(scenes, folder, name, draw, x_label, y_label, title=""):
     return True
 
 
-def draw_over_triangles(record, folder, name, curves, y_label, title="", from_zero=False):
-    """One panel a scene, against its triangles. `curves(scene)` yields points, label, fitted law or None, and look."""
+def triangles_text(n):
+    return f"{n / 1e6:.1f} M" if n >= 1e6 else f"{n / 1e3:.0f} k"
+
+
+def draw_sizes(record, folder, name, curves, y_label, title="", study="size", x="triangles", from_zero=False):
+    """One panel a scene of a study, against a size of its surface. `curves(scene)` yields a row, its value, label, quantity of the fitted
+    law or None, and look."""
     def draw(axes, scene):
-        ends = [end for points, label, law, look in curves(scene) for end in draw_curve(axes, points, label, law, **look)]
+        subjects, ends = record.of(study, scene), []
+        for row_name, value, label, quantity, look in curves(scene):
+            law = record.fit(study, scene, row_name, quantity) if quantity else None
+            ends += draw_curve(axes, series(subjects, row_name, value, x), label, law, **look)
         axes.set_xscale("log")
         if from_zero:
             axes.set_ylim(bottom=0)
         else:
             log_axis(axes.yaxis)
-        triangle_ticks(axes, record, scene)
+        ticks(axes, sorted({s[x] for s in subjects}), triangles_text if x == "triangles" else str)
         return ends
 
-    return draw_scenes(record.scenes("size"), folder, name, draw, "triangles", y_label, title)
+    return draw_scenes(record.scenes(study), folder, name, draw, x, y_label, title)
 
 
-def draw_size(record, folder, everything):
-    names, missing = shown(record.names("size"), everything)
+def draw_times(record, folder, everything, study="size", x="triangles", title="dotted: fitted power laws, their exponents beside the names"):
+    names, missing = shown(record.names(study), everything)
+    return draw_sizes(record, folder, study, lambda scene: (
+        (name, stage("total"), starred(record, study, scene, name), "total", style(name)) for name in names),
+        "ms a query, refit included", (title + left_out(missing)).strip(), study, x)
 
-    def curves(scene):
-        for name in names:
-            yield (series(record.of("size", scene), name, stage("total")), starred(record, "size", scene, name), record.fit("size", scene, name, "total"),
-                   style(name))
 
-    return draw_over_triangles(record, folder, "size", curves, "ms a query, refit included",
-                               "dotted: fitted power laws, their exponents beside the names" + left_out(missing))
+def draw_bones(record, folder, everything):
+    return draw_times(record, folder, everything, "bones", "bones", "")
 
 
 def draw_stages(record, folder, everything):
-    names = record.names("size")
-
-    def curves(scene):
-        for key, colour in STAGES.items():
-            yield (series(record.of("size", scene), names[0], stage(key)), key, record.fit("size", scene, names[0], key),
-                   {"color": colour, "marker": "o"})
-
-    return draw_over_triangles(record, folder, "stages", curves, f"{names[0]}, ms" if names else "",
-                               "dotted: fitted power laws, their exponents beside the names")
+    first = next(iter(record.names("size")), "")
+    return draw_sizes(record, folder, "stages", lambda scene: (
+        (first, stage(key), key, key, {"color": colour, "marker": "o"}) for key, colour in STAGES.items()), f"{first}, ms",
+        "dotted: fitted power laws, their exponents beside the names")
 
 
 def draw_pairs(record, folder, everything):
     names, missing = shown(record.names("size"), everything, FEW_ROWS)
-
-    def curves(scene):
-        for name in names:
-            for key, look in (("bvot", {"ls": "-"}), ("pctp", {"ls": "--", "mfc": "white"})):
-                yield (series(record.of("size", scene), name, count(key)), f"{name} {key.upper()}",
-                       record.fit("size", scene, name, key), {**style(name), **look})
-
-    return draw_over_triangles(record, folder, "pairs", curves, "a query",
-                               "filled: overlap tests (BVOT); hollow: triangle pairs (PCTP), zero left out" + left_out(missing))
+    looks = (("bvot", {"ls": "-"}), ("pctp", {"ls": "--", "mfc": "white"}))
+    return draw_sizes(record, folder, "pairs", lambda scene: (
+        (name, count(key), f"{name} {key.upper()}", key, {**style(name), **look}) for name in names for key, look in looks), "a query",
+        "filled: overlap tests (BVOT); hollow: triangle pairs (PCTP), zero left out" + left_out(missing))
 
 
 def draw_memory(record, folder, everything):
     names, missing = shown(record.names("size"), everything)
-
-    def curves(scene):
-        for name in names:
-            yield series(record.of("size", scene), name, per_triangle), name, None, style(name)
-
-    return draw_over_triangles(record, folder, "memory", curves, "bytes a triangle", left_out(missing).strip(), from_zero=True)
+    return draw_sizes(record, folder, "memory", lambda scene: ((name, per_triangle, name, None, style(name)) for name in names),
+                      "bytes a triangle", left_out(missing).strip(), from_zero=True)
 
 
 def draw_step(record, folder, everything):
@@ -129,23 +117,6 @@ def draw_step(record, folder, everything):
 
     return draw_scenes(record.scenes("step"), folder, "step", draw, "step, in frame steps", "ms a query, refit included",
                        "shaded: steps with contacts, the darker the more of their intervals have one" + left_out(missing))
-
-
-def draw_bones(record, folder, everything):
-    names, missing = shown(record.names("bones"), everything)
-
-    def draw(axes, scene):
-        subjects = record.of("bones", scene)
-        ends = [end for name in names for end in draw_curve(
-            axes, series(subjects, name, stage("total"), "bones"), starred(record, "bones", scene, name), record.fit("bones", scene, name, "total"),
-            **style(name))]
-        axes.set_xscale("log")
-        log_axis(axes.yaxis)
-        ticks(axes, [s["bones"] for s in subjects], str)
-        return ends
-
-    return draw_scenes(record.scenes("bones"), folder, "bones", draw, "bones", "ms a query, refit included",
-                       left_out(missing).strip())
 
 
 def draw_threads(record, folder, everything):
@@ -202,7 +173,7 @@ def draw_contacts(record, folder, most):
 
 def draw_all(record, folder, everything, most_for_contacts):
     """Draws what the record has; returns the names of the charts that were drawn."""
-    drawings = {"size": draw_size, "stages": draw_stages, "pairs": draw_pairs, "memory": draw_memory, "step": draw_step,
+    drawings = {"size": draw_times, "stages": draw_stages, "pairs": draw_pairs, "memory": draw_memory, "step": draw_step,
                 "bones": draw_bones, "threads": draw_threads}
     drawn = {name for name, draw in drawings.items() if draw(record, folder, everything)}
     return drawn | ({"contacts"} if draw_contacts(record, folder, most_for_contacts) else set())
