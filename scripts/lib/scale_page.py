@@ -15,16 +15,36 @@ QUANTITIES = (("ms", stage("total")), ("preparation, ms", lambda prepared, asked
               ("PCTP", count("pctp")), ("bytes a triangle", per_triangle))
 
 
-def marked(subject, lengths, name):
-    """The mark of a ratio of times of steps of these lengths."""
-    return "".join(sorted({mark(step, name) for step in subject["steps"] if step["step"] in lengths}))
+def marks(steps, name):
+    """The mark of a ratio of times of these steps."""
+    return "".join(sorted({mark(step, name) for step in steps}))
 
 
-def bounded(ratio, mark_of=""):
+def long_ratio(record, scene, name):
+    """Time at LONG frame steps over that at one, or None, and its mark."""
+    steps = record.of("step", scene)[0]["steps"]
+    return record.ratios.get((scene, name, LONG)), marks([step for step in steps if step["step"] in (1, LONG)], name)
+
+
+def contact_ratio(record, scene, name, of="median_interval"):
+    """Time with contacts over that without, or None, and its mark."""
+    return record.contacts.get((scene, name, of)), marks(record.of("contacts", scene)[0]["steps"], name)
+
+
+def brief(ratio, mark_of):
+    return f"{ratio['ratio']:.2f}{mark_of}"
+
+
+def bounded(ratio, mark_of):
     """A ratio with the mark of its times, and its interval, where it has one."""
     if not ratio:
         return "–"
-    return f"{ratio['ratio']:.2f}{mark_of}" + (f" [{ratio['low']:.2f}, {ratio['high']:.2f}]" if "low" in ratio else "")
+    return brief(ratio, mark_of) + (f" [{ratio['low']:.2f}, {ratio['high']:.2f}]" if "low" in ratio else "")
+
+
+def by_row(names, quantities, cells):
+    """Lines of a table, one for each row and quantity; `cells(name, title, value)` are those behind its title."""
+    return [[f"`{name}`: {title}", *cells(name, title, value)] for name in names for title, value in quantities]
 
 
 def drawing(drawn, name, title):
@@ -40,22 +60,18 @@ def size_part(record, drawn):
     text = ["## With triangles", "",
             f"Each scene with {min(sizes):,} to {max(sizes):,} triangles in the same motion. Exponents of a least-squares line in "
             "log-log: 1 is linear, 2 quadratic.", ""]
-    lines = []
-    for name in record.names("size"):
-        for key, title in (("total", "time"), *STAGES, ("make_ms", "preparation"), ("bvot", "BVOT"), ("pctp", "PCTP")):
-            cells = [record.exponent("size", scene, name, key) for scene in scenes]
-            if any(cell != "–" for cell in cells):
-                lines.append([f"`{name}`: {title}"] + cells)
+    laws = [("time", "total"), *((title, key) for key, title in STAGES), ("preparation", "make_ms"), ("BVOT", "bvot"), ("PCTP", "pctp")]
+    lines = by_row(record.names("size"), laws, lambda name, _, key: [record.exponent("size", scene, name, key) for scene in scenes])
+    lines = [line for line in lines if any(cell != "–" for cell in line[1:])]
     text += table(["exponent"] + scenes, lines) + ["", "–: absent, or zero at all but two sizes.", ""]
     text += drawing(drawn, "size", "time against triangles")
     largest = {scene: max(record.of("size", scene), key=lambda s: s["triangles"]) for scene in scenes}
-    lines = []
-    for name in record.names("size"):
-        for title, value in QUANTITIES:
-            pairs = [(row(largest[scene], name), row(largest[scene]["steps"][0], name)) for scene in scenes]
-            lines.append([f"`{name}`: {title}"] + [
-                number(value(*pair)) + (mark(largest[scene]["steps"][0], name) if title == "ms" else "") if all(pair) else "–"
-                for scene, pair in zip(scenes, pairs)])
+
+    def cell(name, title, value, subject):
+        pair = row(subject, name), row(subject["steps"][0], name)
+        return number(value(*pair)) + (mark(subject["steps"][0], name) if title == "ms" else "") if all(pair) else "–"
+
+    lines = by_row(record.names("size"), QUANTITIES, lambda *of: [cell(*of, largest[scene]) for scene in scenes])
     text += ["At the largest size:", ""]
     text += table(["", *(f"{scene}, {largest[scene]['triangles']:,}" for scene in scenes)], lines) + [""]
     text += drawing(drawn, "stages", f"stages of {first} against triangles")
@@ -74,7 +90,7 @@ def step_part(record, drawn):
             "The same surfaces, intervals that end more or fewer frames later. A share of a frame ends on the straight line to "
             f"the next. Time at {LONG} frame steps over that at 1, [95 % interval]:", ""]
     text += table([f"{LONG}x over 1x"] + scenes, [
-        [f"`{name}`", *(bounded(record.ratios.get((scene, name, LONG)), marked(record.of("step", scene)[0], (1, LONG), name)) for scene in scenes)]
+        [f"`{name}`", *(bounded(*long_ratio(record, scene, name)) for scene in scenes)]
         for name in record.names("step")]) + [""]
     text += drawing(drawn, "step", "time against the length of the step")
     steps = [step["step"] for step in record.of("step")[0]["steps"]]
@@ -104,12 +120,12 @@ def bones_part(record, drawn):
     text = ["## With bones", "", "The same surface in the same motion; the chain's bones are merged or cut.", ""]
     for scene in scenes:
         subjects = record.of("bones", scene)
-        lines = []
-        for name in record.names("bones"):
-            for title, value in QUANTITIES:
-                found = dict(series(subjects, name, value, "bones"))
-                lines.append([f"`{name}`: {title}"] + [
-                    number(found.get(s["bones"], 0)) + (mark(s["steps"][0], name) if title == "ms" else "") for s in subjects])
+
+        def cells(name, title, value):
+            found = dict(series(subjects, name, value, "bones"))
+            return [number(found.get(s["bones"], 0)) + (mark(s["steps"][0], name) if title == "ms" else "") for s in subjects]
+
+        lines = by_row(record.names("bones"), QUANTITIES, cells)
         text += table([f"{scene}, bones"] + [str(s["bones"]) for s in subjects], lines) + [""]
     return text + drawing(drawn, "bones", "time against bones")
 
@@ -160,12 +176,6 @@ def threads_part(record, drawn):
     return text + drawing(drawn, "threads", "times as fast against threads")
 
 
-def contacts_mark(record, scene, name):
-    """The mark of a ratio of the times with and without contacts."""
-    subject = record.of("contacts", scene)[0]
-    return "".join(sorted({mark(step, name) for step in subject["steps"]}))
-
-
 def contacts_part(record, drawn):
     scenes = record.scenes("contacts")
     if not scenes:
@@ -175,10 +185,11 @@ def contacts_part(record, drawn):
             "Each scene and its variant that collides and is pushed apart, in turn, in the intervals of their clips: the same "
             "surface, prepared once. A row with `--first` is asked for the earliest contact alone, the others for all that they "
             "find. Time of the median interval with contacts over that without, [95 % interval]:", ""]
+    def ratios(of):
+        return [[f"`{name}`", *(bounded(*contact_ratio(record, s, name, of)) for s in scenes)] for name in record.names("contacts")]
+
     lines = [["intervals with a contact"] + [f"{steps[s][1]['colliding']} of {len(steps[s][1]['starts'])}" for s in scenes]]
-    for name in record.names("contacts"):
-        lines.append([f"`{name}`"] + [bounded(record.contacts.get((s, name, "median_interval")), contacts_mark(record, s, name)) for s in scenes])
-    text += table(["with over without"] + scenes, lines) + [""]
+    text += table(["with over without"] + scenes, lines + ratios("median_interval")) + [""]
     for scene in scenes:
         reasons = {}
         for one in record.of("contacts", scene)[0].get("left_out", []):
@@ -186,20 +197,16 @@ def contacts_part(record, drawn):
         text += [f"Not run on {scene}: {', '.join(names)} ({why})." for why, names in reasons.items()]
     text += ([""] if text[-1] else []) + drawing(drawn, "contacts", "time with contacts over time without")
     text += ["The same of all intervals together, where few with many contacts weigh as much as they take:", ""]
-    text += table(["with over without"] + scenes,
-                  [[f"`{name}`"] + [bounded(record.contacts.get((s, name, "total")), contacts_mark(record, s, name)) for s in scenes]
-                   for name in record.names("contacts")]) + [""]
-    lines = []
-    for name in record.names("contacts"):
-        for title, value in (("ms, median interval", lambda r: r.get("ms", {}).get("median_interval")),
-                             ("ms, mean", lambda r: r.get("ms", {}).get("total")),
-                             ("elementary tests, ms", lambda r: r.get("ms", {}).get("elementary")),
-                             ("PCTP", lambda r: r["counts"].get("pctp"))):
-            def cell(scene, step, value=value, is_time="ms" in title):
-                own = row(step, name)
-                return number(value(own)) + (mark(step, name) if is_time else "") if own else "–"
+    text += table(["with over without"] + scenes, ratios("total")) + [""]
 
-            lines.append([f"`{name}`: {title}"] + [" → ".join(cell(scene, step) for step in steps[scene]) for scene in scenes])
+    def cell(name, title, value, step):
+        own = row(step, name)
+        return number(value(own)) + (mark(step, name) if "ms" in title else "") if own else "–"
+
+    quantities = (("ms, median interval", lambda r: r.get("ms", {}).get("median_interval")), ("ms, mean", lambda r: r.get("ms", {}).get("total")),
+                  ("elementary tests, ms", lambda r: r.get("ms", {}).get("elementary")), ("PCTP", lambda r: r["counts"].get("pctp")))
+    lines = by_row(record.names("contacts"), quantities,
+                   lambda *of: [" → ".join(cell(*of, step) for step in steps[scene]) for scene in scenes])
     return text + ["Without → with:", ""] + table([""] + scenes, lines) + [""]
 
 
@@ -235,6 +242,12 @@ def thickness_part(record):
     return text + table(head, lines) + [""]
 
 
+def timed(step, name):
+    """The row of a strategy in a step, or None where it has no time."""
+    own = row(step, name)
+    return own if own and "ms" in own else None
+
+
 def slower(mine, theirs):
     """Whether a row took longer than another in every repetition. Less than that is noise."""
     of = [row.get("total_samples") or [row["ms"]["total"]] for row in (mine, theirs)]
@@ -246,56 +259,51 @@ def time_of(step, own):
     return number(own["ms"]["total"]) + mark(step, own["name"])
 
 
+def beaten(where, step, name, rows):
+    """In a sentence, that the fastest of some rows is faster than a row; nothing where none is."""
+    mine, best = timed(step, name), min((r for r in rows if "ms" in r), key=lambda r: r["ms"]["total"], default=None)
+    if not mine or not best or not slower(mine, best):
+        return []
+    return [f"{where}: `{best['name']}` is faster than `{name}`, {time_of(step, best)} against {time_of(step, mine)} ms."]
+
+
 def losses(record):
     """What grows faster than it should, by rule, so that a new record changes it without a hand."""
     found = []
     for scene in record.scenes("size"):
-        for name in record.names("size")[:1]:
-            law = record.fit("size", scene, name, "total")
-            others = [n for n in record.names("size") if n != name]
-            subjects = sorted(record.of("size", scene), key=lambda s: s["triangles"])
-            for smaller, larger in zip(subjects, subjects[1:]):
-                growth = larger["triangles"] / smaller["triangles"]
-                times = [row(s["steps"][0], name) for s in (smaller, larger)]
-                if all(one and "ms" in one for one in times):
-                    ratio = times[1]["ms"]["total"] / times[0]["ms"]["total"]
-                    if ratio > growth ** JUMP:
-                        found.append(f"{scene}: from {smaller['triangles']:,} to {larger['triangles']:,} triangles, {growth:.1f} times as "
-                                     f"many, the time of `{name}` grows {ratio:.1f} times.")
-            if law and law["exponent"] > STEEP:
-                found.append(f"{scene}: the time of `{name}` grows with exponent {law['exponent']:.2f}, more than linearly.")
-            for subject in record.of("size", scene):
-                mine = row(subject["steps"][0], name)
-                for other in others:
-                    theirs = row(subject["steps"][0], other)
-                    if mine and theirs and "ms" in mine and "ms" in theirs and slower(mine, theirs):
-                        found.append(f"{scene} with {subject['triangles']:,} triangles: `{name}` takes "
-                                     f"{time_of(subject['steps'][0], mine)} ms, `{other}` {time_of(subject['steps'][0], theirs)} ms.")
+        name, *others = record.names("size")
+        subjects = sorted(record.of("size", scene), key=lambda s: s["triangles"])
+        for smaller, larger in zip(subjects, subjects[1:]):
+            growth = larger["triangles"] / smaller["triangles"]
+            times = [timed(s["steps"][0], name) for s in (smaller, larger)]
+            ratio = times[1]["ms"]["total"] / times[0]["ms"]["total"] if all(times) else 0
+            if ratio > growth ** JUMP:
+                found.append(f"{scene}: from {smaller['triangles']:,} to {larger['triangles']:,} triangles, {growth:.1f} times as "
+                             f"many, the time of `{name}` grows {ratio:.1f} times.")
+        law = record.fit("size", scene, name, "total")
+        if law and law["exponent"] > STEEP:
+            found.append(f"{scene}: the time of `{name}` grows with exponent {law['exponent']:.2f}, more than linearly.")
+        for subject in record.of("size", scene):
+            step = subject["steps"][0]
+            mine = timed(step, name)
+            found += [f"{scene} with {subject['triangles']:,} triangles: `{name}` takes {time_of(step, mine)} ms, `{other}` {time_of(step, theirs)} ms."
+                      for other in others if mine and (theirs := timed(step, other)) and slower(mine, theirs)]
     for scene in record.scenes("step"):
-        for name in record.names("step")[:1]:
-            ratio = record.ratios.get((scene, name, LONG))
-            if ratio and ratio["ratio"] > 1.5:
-                found.append(f"{scene}: `{name}` takes {ratio['ratio']:.2f}{marked(record.of('step', scene)[0], (1, LONG), name)} times as long at {LONG} frame steps as at one.")
-            for step in record.of("step", scene)[0]["steps"]:
-                mine = row(step, name)
-                best = min((r for r in step["strategies"] if "ms" in r), key=lambda r: r["ms"]["total"], default=None)
-                if mine and best and "ms" in mine and slower(mine, best):
-                    found.append(f"{scene} at {step['step']:g} frame steps: `{best['name']}` is faster than `{name}`, "
-                                 f"{time_of(step, best)} against {time_of(step, mine)} ms.")
+        name = record.names("step")[0]
+        ratio = long_ratio(record, scene, name)
+        if ratio[0] and ratio[0]["ratio"] > 1.5:
+            found.append(f"{scene}: `{name}` takes {brief(*ratio)} times as long at {LONG} frame steps as at one.")
+        for step in record.of("step", scene)[0]["steps"]:
+            found += beaten(f"{scene} at {step['step']:g} frame steps", step, name, step["strategies"])
     for scene in record.scenes("contacts"):
         name = record.of("contacts", scene)[0]["strategies"][0]["name"]
         for asked in (name, name + FIRST):
             for of, title in (("median_interval", "in the median interval"), ("total", "over all intervals")):
-                ratio = record.contacts.get((scene, asked, of))
-                if ratio and ratio["ratio"] > CONTACTS:
-                    found.append(f"{scene} with contacts: `{asked}` takes {ratio['ratio']:.2f}{contacts_mark(record, scene, asked)} times as long as without, {title}.")
+                ratio = contact_ratio(record, scene, asked, of)
+                if ratio[0] and ratio[0]["ratio"] > CONTACTS:
+                    found.append(f"{scene} with contacts: `{asked}` takes {brief(*ratio)} times as long as without, {title}.")
         for step in record.of("contacts", scene)[0]["steps"]:
-            mine = row(step, name)
-            asked_alike = [r for r in step["strategies"] if "ms" in r and not r["name"].endswith(FIRST)]
-            best = min(asked_alike, key=lambda r: r["ms"]["total"], default=None)
-            if mine and best and "ms" in mine and slower(mine, best):
-                found.append(f"{step['scene']}: `{best['name']}` is faster than `{name}`, {time_of(step, best)} "
-                             f"against {time_of(step, mine)} ms.")
+            found += beaten(step["scene"], step, name, [r for r in step["strategies"] if not r["name"].endswith(FIRST)])
     for scene in record.scenes("bones"):
         law = record.fit("bones", scene, record.names("bones")[0], "total")
         if law and law["exponent"] > 0.5:
@@ -355,13 +363,11 @@ def summary(record):
             parts.append(f"{scene} {law['exponent']:.2f}")
     if parts:
         text += [f"`{names[0]}`, time against triangles, exponents: {', '.join(parts)}."]
-    ratios = [f"{scene} {record.ratios[(scene, names[0], LONG)]['ratio']:.2f}{marked(record.of('step', scene)[0], (1, LONG), names[0])}" for scene in record.scenes("step")
-              if (scene, names[0], LONG) in record.ratios]
+    ratios = [f"{scene} {brief(*ratio)}" for scene in record.scenes("step") if (ratio := long_ratio(record, scene, names[0]))[0]]
     if ratios:
         text += [f"Time at {LONG} frame steps over that at one: {', '.join(ratios)}."]
     for name in (names[0], names[0] + FIRST):
-        ratios = [f"{scene} {record.contacts[(scene, name, 'median_interval')]['ratio']:.2f}{contacts_mark(record, scene, name)}"
-                  for scene in record.scenes("contacts") if (scene, name, "median_interval") in record.contacts]
+        ratios = [f"{scene} {brief(*ratio)}" for scene in record.scenes("contacts") if (ratio := contact_ratio(record, scene, name))[0]]
         if ratios:
             text += [f"`{name}`, the median interval's time with contacts over that without: {', '.join(ratios)}."]
     return text
