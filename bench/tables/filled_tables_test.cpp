@@ -57,36 +57,6 @@ Cell cell(nlohmann::ordered_json column) {
   return filled_tables(one_column(column), published, records).at(0).rows.at(0).cells.at(0);
 }
 
-TEST(FilledTables, CountsAreExact) {
-  const Cell mean = cell({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"scale", 0.001}});
-  EXPECT_DOUBLE_EQ(mean.measured.value.value(), 0.2);
-  EXPECT_FALSE(mean.measured.interval);
-  const auto value = [](const nlohmann::ordered_json& column) { return cell(column).measured.value; };
-  EXPECT_EQ(value({{"quantity", "counts.bvot"}, {"strategy", "slow"}, {"statistic", "max"}}), 300);
-  EXPECT_EQ(value({{"quantity", "counts.bvot+bvot"}, {"strategy", "slow"}}), 400);
-  EXPECT_EQ(value({{"quantity", "counts.bvot"}, {"strategy", "swift"}, {"over", "slow"}}), 0.1);
-  EXPECT_EQ(value({{"quantity", "counts.bvot"},
-                   {"strategy", "swift"},
-                   {"over_quantity", "preparation.atomic_clusters"}}),
-            20 / 7.0);
-  EXPECT_EQ(value({{"quantity", "verification.recall"}, {"strategy", "swift"}}), 0.5);
-}
-
-TEST(FilledTables, TimesAreMediansOfRepetitions) {
-  const Cell time = cell({{"quantity", "ms.rv_update+traversal"}, {"strategy", "slow"}});
-  EXPECT_EQ(time.measured.value, 9);  // of 9, 45 and 6; `slow` has no rv_update
-  EXPECT_EQ(time.measured.interval.value().low, 6);
-  EXPECT_EQ(time.measured.interval.value().high, 45);
-  EXPECT_EQ(cell({{"quantity", "ms.refit+traversal"}, {"strategy", "slow"}}).measured.value, 10);
-}
-
-TEST(FilledTables, RatiosArePairedWithinARepetition) {
-  const Cell ratio = cell({{"quantity", "ms.rv_update+traversal"}, {"strategy", "slow"}, {"over", "swift"}});
-  EXPECT_DOUBLE_EQ(ratio.measured.value.value(), 3);
-  EXPECT_DOUBLE_EQ(ratio.measured.interval.value().low, 3);
-  EXPECT_DOUBLE_EQ(ratio.measured.interval.value().high, 3);
-}
-
 TEST(FilledTables, PublishedFiguresStandBesideMeasuredOnes) {
   using Paths = std::vector<std::string>;
   const auto published = [](const Paths& paths) {
@@ -96,19 +66,6 @@ TEST(FilledTables, PublishedFiguresStandBesideMeasuredOnes) {
   EXPECT_EQ(published({"t.{scene}.other", "t.{scene}.k"}), 2.5);
   EXPECT_FALSE(published({"t.{scene}.other"}));
   EXPECT_FALSE(cell({{"quantity", "scene.triangles"}}).published);
-}
-
-TEST(FilledTables, EmptyCellsSayWhy) {
-  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "nowhere"}}).measured.reason,
-            "nowhere: not in this build");
-  EXPECT_EQ(cell({{"quantity", "counts.bvot"}, {"strategy", "base"}}).measured.reason,
-            "base: not run in this record");
-  EXPECT_EQ(cell({{"quantity", "ms.rv_update"}, {"strategy", "slow"}}).measured.reason,
-            "slow: has no stage rv_update");
-  EXPECT_EQ(cell({{"quantity", "counts.clusters"}, {"strategy", "slow"}}).measured.reason,
-            "slow: does not count clusters");
-  EXPECT_EQ(cell({{"quantity", "preparation.decomposition_ms"}, {"strategy", "slow"}}).measured.reason,
-            "slow: has no such preparation");
 }
 
 TEST(FilledTables, AColumnForEachStrategyOfTheRecords) {

@@ -16,7 +16,7 @@ using nlohmann::ordered_json;
 constexpr std::string_view kStartTest = "embedding";
 // The stage in which the fallback, a complete row, finds which triangles cross at the start.
 constexpr std::string_view kStartSeen = "start";
-constexpr std::array kQueryStages = {"refit", "rv_update", "traversal", "elementary"};
+constexpr std::array kStagesOfQuery = {"refit", "rv_update", "traversal", "elementary"};
 
 // Why there is no figure.
 struct Missing {
@@ -97,7 +97,7 @@ Amount time_amount(const StrategyRecord& strategy, const std::string& stages, co
   std::vector<std::string> parts = split(stages, '+');
   if (const auto query = std::ranges::find(parts, "query"); query != parts.end()) {
     parts.erase(query);
-    parts.insert(parts.begin(), kQueryStages.begin(), kQueryStages.end());
+    parts.insert(parts.begin(), kStagesOfQuery.begin(), kStagesOfQuery.end());
   }
   for (const std::string& stage : parts) {
     const auto column = strategy.ms.find(stage);

@@ -82,6 +82,7 @@ TEST(Quantity, DividesWithinARepetition) {
   EXPECT_EQ(ratio.interval->high, 10);
   EXPECT_EQ(of("counts.bvot", "slow", {{"over", "quick"}}).value, 1);
   EXPECT_EQ(of("ms.query", "slow", {{"over_quantity", "ms.streaming"}}).value, 24);
+  EXPECT_EQ(of("counts.bvot", "quick", {{"over_quantity", "preparation.atomic_clusters"}}).value, 30 / 9.0);
   EXPECT_EQ(
       measure_over({{"quantity", "counts.bvot"}, {"strategy", "slow"}}, small_record(), small_record()).value,
       1);
@@ -111,6 +112,7 @@ TEST(Quantity, SaysWhyThereIsNoFigure) {
   EXPECT_EQ(of("counts.bvot", "base").reason, "base: not run in this record");
   EXPECT_EQ(of("counts.bvot", "nosuch").reason, "nosuch: not in this build");
   EXPECT_EQ(of("preparation.atomic_clusters", "slow").reason, "slow: has no clusters");
+  EXPECT_EQ(of("preparation.decomposition_ms", "slow").reason, "slow: has no such preparation");
   EXPECT_EQ(of("truth.missed", "").reason, "not held against truth from outside");
   EXPECT_EQ(of("verification.recall", "slower").reason, "slower: not verified in this record");
   for (const char* wrong : {"mood", "scene.mood", "footprint.mood", "mood.ms"})

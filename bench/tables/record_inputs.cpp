@@ -37,17 +37,16 @@ std::size_t place_of(const std::string& scene) {
 
 }  // namespace
 
-RecordFiles record_files(const std::vector<std::string>& named, std::span<const std::string_view> wanted,
+RecordFiles record_files(const std::vector<std::string>& named, const std::vector<std::string>& wanted,
                          bool any) {
   RecordFiles files;
   std::string left_out;  // said only where something is left
   const auto add = [&](const fs::path& file, bool named_itself) {
     const std::string schema = schema_of(file);
-    // An outdated record of a run is refused where it is read, and says why.
-    const bool is_wanted =
-        std::ranges::find(wanted, schema) != wanted.end() || schema.starts_with("cscd.run/");
-    if (is_wanted) {
-      files[schema.starts_with("cscd.run/") ? std::string(kRunSchema) : schema].push_back(file);
+    const auto kind = std::ranges::find_if(
+        wanted, [&](const std::string& one) { return schema.starts_with("cscd." + one + "/"); });
+    if (kind != wanted.end()) {
+      files[*kind].push_back(file);
     } else if (named_itself) {
       if (!schema.starts_with("cscd."))
         throw InputError("record " + file.string() + ": is no record; name what cscd run wrote");
@@ -62,7 +61,7 @@ RecordFiles record_files(const std::vector<std::string>& named, std::span<const 
     }
     for (const fs::path& file : files_in(name, {".json", ".json.gz"})) add(file, false);
   }
-  if (any ? files.empty() : !files.contains(std::string(wanted.front())))
+  if (any ? files.empty() : !files.contains(wanted.front()))
     throw InputError((named.size() == 1 ? named.front() + " holds no" : "none of these holds a") +
                      " record of cscd run; name what cscd run --json wrote, or a folder of it");
   std::fputs(left_out.c_str(), stderr);

@@ -2,24 +2,23 @@
 
 #include <filesystem>
 #include <map>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "bench/records/record.h"
 
 namespace cscd::bench {
 
-// Files that hold records, by the schema that each names: "cscd.run/2" and so on.
+// Files that hold records, by what their schema is of: "run" for "cscd.run/2".
 using RecordFiles = std::map<std::string, std::vector<std::filesystem::path>>;
 
-// Sorts files and the .json and .json.gz files of folders by their schema. `wanted` are schemas of records
-// that the command reads. A file of another schema of this project, such as tables.json, is left out, as is
-// any JSON without a schema in a folder; if it was named by itself, standard error says so. Throws InputError
-// if a file cannot be read, is no JSON, or was named by itself and has no schema of this project, and if no
-// record of `wanted`'s first schema is left; with `any`, if no record of any schema is left.
-RecordFiles record_files(const std::vector<std::string>& named, std::span<const std::string_view> wanted,
+// Sorts files and the .json and .json.gz files of folders by their schema. `wanted` is what the command reads
+// records of, in any version: an outdated one is refused where it is read, and says why. A file of another
+// schema of this project, such as tables.json, is left out, as is any JSON without a schema in a folder; if
+// it was named by itself, standard error says so. Throws InputError if a file cannot be read, is no JSON, or
+// was named by itself and has no schema of this project, and if no record of the first that is wanted is
+// left; with `any`, if no record at all is left.
+RecordFiles record_files(const std::vector<std::string>& named, const std::vector<std::string>& wanted,
                          bool any = false);
 
 // Reads records of different scenes whose verifications passed: those of the paper's scenes in the paper's

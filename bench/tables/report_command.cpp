@@ -1,6 +1,5 @@
 #include <CLI/App.hpp>
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -39,11 +38,9 @@ struct ReportOptions {
   bool views = false, force = false;
 };
 
-constexpr std::string_view kAccuracySchema = "cscd.accuracy/1", kScaleSchema = "cscd.scale/1";
-
 // The only record of a study; an empty path where none was named.
-std::filesystem::path only_record(const RecordFiles& files, std::string_view schema) {
-  const auto found = files.find(std::string(schema));
+std::filesystem::path only_record(const RecordFiles& files, const std::string& study) {
+  const auto found = files.find(study);
   if (found == files.end()) return {};
   if (found->second.size() > 1)
     throw InputError("record " + found->second[1].string() + ": a second record of this study; give one");
@@ -139,29 +136,27 @@ json document_of(const ReportOptions& options, const RecordFiles& files, const s
     const std::vector<FilledTable> made = filled_tables(records);
     tables = tables_json(made, shaped_tables(made, records), judge_claims(records), records);
   }
-  return {{"schema", "cscd.report/2"},
-          {"base", ""},
-          {"command", command},
-          {"records", std::move(rows)},
-          {"looks", std::move(looks)},
-          {"tables", std::move(tables)},
-          {"accuracy",
-           study_json(only_record(files, kAccuracySchema), "accuracy.schema.json", accuracy_json, link)},
-          {"growth", study_json(only_record(files, kScaleSchema), "scale.schema.json", growth_json, link)},
-          {"history", std::move(history)},
-          {"views", json::object()}};
+  return {
+      {"schema", "cscd.report/2"},
+      {"base", ""},
+      {"command", command},
+      {"records", std::move(rows)},
+      {"looks", std::move(looks)},
+      {"tables", std::move(tables)},
+      {"accuracy", study_json(only_record(files, "accuracy"), "accuracy.schema.json", accuracy_json, link)},
+      {"growth", study_json(only_record(files, "scale"), "scale.schema.json", growth_json, link)},
+      {"history", std::move(history)},
+      {"views", json::object()}};
 }
 
 void report(const ReportOptions& options) {
-  constexpr std::array<std::string_view, 3> wanted = {kRunSchema, kAccuracySchema, kScaleSchema};
   const bool is_page = !options.folder.empty();
   if (!is_page && options.json.empty())
     throw InputError("--out or --json: one of them has to say where the report goes");
   if (is_page) require_viewer();
-  const RecordFiles files = record_files(options.records, wanted, !is_page);
-  const auto of_runs = files.find(std::string(kRunSchema));
-  std::vector<std::filesystem::path> runs;
-  if (of_runs != files.end()) runs = of_runs->second;
+  const RecordFiles files = record_files(options.records, {"run", "accuracy", "scale"}, !is_page);
+  std::vector<std::filesystem::path> runs =
+      files.contains("run") ? files.at("run") : std::vector<std::filesystem::path>();
   const std::vector<Record> records = read_records(runs);
   std::optional<OutputFile> document, output;
   if (!options.json.empty()) document.emplace(options.json, options.force);
@@ -193,7 +188,10 @@ void add_report(CLI::App& app) {
       "Write one HTML page of the numbers in records: speed, work per interval, stage times, the paper's "
       "tables\n"
       "published beside measured, its claims, accuracy against time, growth and history.\n\n"
-      "  cscd report results/FOLDER --view -o site\n\n"
+      "  cscd report results/FOLDER --view -o site\n"
+      "  cscd report results/FOLDER --json figures.json    the same as data; also of cscd accuracy or cscd "
+      "scale "
+      "alone\n\n"
       "The page, site/index.html, needs no network. Every figure names the records that it comes from.");
   command
       ->add_option("records", options->records,

@@ -44,6 +44,10 @@ TEST_F(ReportPage, ShowsTheFiguresOfItsRecord) {
 TEST_F(ReportPage, TakesRecordsOfOtherStudies) {
   ASSERT_EQ(run(kAccuracy).status, 0);
   expect_refused(run("cscd report a.json -o site"), "a.json holds no record of cscd run");
+  expect_refused(run("cscd report a.json"), "--out or --json");
+  const auto alone = nlohmann::json::parse(run("cscd report a.json --json -").out);
+  EXPECT_TRUE(alone["tables"].is_null());
+  EXPECT_GT(alone["accuracy"]["data"]["all"]["newton"]["queries"], 0);
   expect_refused(run("cscd report small.json a.json a.json -o site"), "a second record of this study");
   expect_refused(run("echo {} > empty.json; cscd report empty.json -o site"), "empty.json");
   expect_refused(run("echo nothing > text.json; cscd report text.json -o site"), "text.json: is no record");

@@ -1,5 +1,4 @@
 #include <CLI/App.hpp>
-#include <array>
 #include <cstdio>
 #include <deque>
 #include <filesystem>
@@ -33,8 +32,7 @@ std::string page_of(const TableOptions& options) {
 }
 
 void tables(const TableOptions& options) {
-  constexpr std::array<std::string_view, 1> wanted = {kRunSchema};
-  std::vector<fs::path> files = record_files(options.records, wanted).at(std::string(kRunSchema));
+  std::vector<fs::path> files = record_files(options.records, {"run"}).at("run");
   const std::vector<Record> records = read_records(files);
   const std::vector<FilledTable> made = filled_tables(records);
   const std::vector<ShapedTable> shaped = shaped_tables(made, records, options.intervals);

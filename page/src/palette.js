@@ -1,4 +1,4 @@
-// Colours that colour-blind readers can tell apart: Okabe and Ito's, as in scripts/lib/charts.py.
+// Colours that colour-blind readers can tell apart: Okabe and Ito's, as in bench/tables/looks.json.
 export const ORANGE = "#E69F00", BLUE = "#0072B2", GREEN = "#009E73", PINK = "#CC79A7", RED = "#D55E00", SKY = "#56B4E9",
   YELLOW = "#F0E442", CROSSED = "#F3B493", SKIN = "#C9D3DB", GREY = "#AEB6BD";
 export const CLUSTERS = [BLUE, ORANGE, SKY, RED, GREEN, YELLOW, PINK];

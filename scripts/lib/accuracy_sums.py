@@ -2,16 +2,16 @@
 from types import SimpleNamespace
 
 from looks import LOOKS
-from records import document_of, read_record
+from records import read_json, study_of
 
 GROUPS = dict(LOOKS["groups"])
 
 
 class Accuracy:
     def __init__(self, path, program):
-        self.raw = read_record(path, "cscd.accuracy/1", "cscd accuracy")
+        self._sums = study_of(program, path, "accuracy")
+        self.raw = read_json(path)
         self.rows = self.raw["rows"]
-        self._sums = document_of(program, path)["accuracy"]["data"]
 
     def sums(self, kind):
         """Of every row, over the workloads of a kind, such as "group hard" (bench/tables/studies_json.h); rows that saw nothing are left out."""

@@ -17,20 +17,17 @@ def read_json(path):
         raise ValueError(str(error)) from error
 
 
-def read_record(path, schema, command):
-    """A record of that schema, which `command` writes; refuses anything else."""
-    try:
-        record = read_json(path)
-    except (OSError, ValueError) as error:
-        refuse(f"{path}: cannot be read ({error}); name a file that `{command}` wrote")
-    if not isinstance(record, dict) or record.get("schema") != schema:
-        refuse(f"{path}: its schema is not {schema}; write it anew with `{command}`")
-    return record
-
-
 @functools.cache
 def document_of(program, *paths):
     """The document of figures that `cscd report` makes of records: texts, marks and sums that pages and charts place."""
     if not program.exists():
         refuse(f"{program}: is not there; build it with scripts/reproduce, or name another with --program")
     return answer_of(program, "report", *paths)
+
+
+def study_of(program, path, study):
+    """What the document of a record says of a study."""
+    found = document_of(program, path)[study]
+    if not found:
+        refuse(f"{path}: is a record of something else; name one of the study")
+    return found["data"]

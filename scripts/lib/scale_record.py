@@ -1,7 +1,5 @@
 """What pages and charts ask of a record of `cscd scale`."""
-from records import document_of, read_record
-
-SCHEMA = "cscd.scale/1"
+from records import read_json, study_of
 
 
 class Record:
@@ -9,8 +7,9 @@ class Record:
     figures says."""
 
     def __init__(self, path, program):
-        self.raw = record = read_record(path, SCHEMA, "cscd scale")
-        for subject, steps in zip(record["subjects"], document_of(program, path)["growth"]["data"]["shortfalls"]):
+        growth = study_of(program, path, "growth")
+        self.raw = record = read_json(path)
+        for subject, steps in zip(record["subjects"], growth["shortfalls"]):
             for step, lacking in zip(subject["steps"], steps):
                 step["lacking"] = lacking
         self.fits = {(f["study"], f["scene"], f["strategy"], f["quantity"]): f for f in record["fits"]}

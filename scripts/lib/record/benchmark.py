@@ -8,7 +8,7 @@ from Debian's packages, and takes a quarter of an hour on 2 idle cores when ever
 """
 
 from markdown import built, number, table
-from records import read_record
+from records import read_json
 from script import ROOT, call, measured_program, new_results, output_of, parser_of
 
 # A strategy, or a strategy and an elementary test. Strategies differ in what they cull, and the tests in what they decide.
@@ -68,6 +68,6 @@ def main():
             answers, score = made / "answers.json.gz", folder / f"{name}.json.gz"
             call(cscd, "benchmark", "answer", made, "--strategy", strategy, "--elementary", test, "--force", "--json", answers)
             call(cscd, "benchmark", "judge", made, answers, "--json", score)
-            scores.append(read_record(score, "cscd.score/1", "cscd benchmark judge --json"))
+            scores.append(read_json(score))
         scores.sort(key=lambda score: (score["notes"]["elementary"] != "filtered_exact", entry(score)))
         (folder / "benchmark.md").write_text(page(scores))
