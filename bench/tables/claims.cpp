@@ -4,6 +4,7 @@
 
 #include "bench/output/data.h"
 #include "bench/output/markdown.h"
+#include "bench/tables/distinct.h"
 #include "bench/tables/filled_tables.h"
 #include "bench/tables/run_times.h"
 #include "core/base/number_text.h"
@@ -140,7 +141,7 @@ ClaimResult judge(const ordered_json& claim, const ordered_json& stage_rows,
       if (evidence.holds || !evidence.measured.value || !is_about_times(definition)) continue;
       for (const char* key : {"strategy", "over"}) {
         const std::string name = definition.value(key, "");
-        if (!name.empty() && std::ranges::find(compared, name) == compared.end()) compared.push_back(name);
+        if (!name.empty()) add_new(compared, name);
       }
     }
     add_stages(stage_rows, compared, scene, records, result.stages);
@@ -166,15 +167,6 @@ bool same(const Measured& a, const Measured& b) {
   return a.value && b.value && *a.value == *b.value;
 }
 
-// The names in the order in which they first occur.
-template <class Parts, class Name>
-std::vector<std::string> names_in(const Parts& parts, const Name& name) {
-  std::vector<std::string> names;
-  for (const auto& part : parts)
-    if (std::ranges::find(names, name(part)) == names.end()) names.push_back(name(part));
-  return names;
-}
-
 constexpr auto kScene = [](const auto& part) { return part.scene; };
 constexpr auto kTitle = [](const auto& part) { return part.title; };
 
@@ -197,11 +189,11 @@ void add_rows(const std::string& title, std::span<const Evidence> evidence, cons
 }
 
 std::string stages_markdown(const ClaimResult& claim) {
-  const std::vector<std::string> scenes = names_in(claim.stages, kScene);
+  const std::vector<std::string> scenes = distinct(claim.stages, kScene);
   std::vector<std::string> head(1, "where the time goes: `published`, `today` (the paper)");
   head.insert(head.end(), scenes.begin(), scenes.end());
   std::vector<std::vector<std::string>> rows;
-  for (const std::string& title : names_in(claim.stages, kTitle)) {
+  for (const std::string& title : distinct(claim.stages, kTitle)) {
     std::vector<std::string>& row = rows.emplace_back(1, title);
     for (const std::string& scene : scenes) {
       const auto place = std::ranges::find_if(
@@ -315,8 +307,8 @@ std::string claims_markdown(std::span<const ClaimResult> claims) {
   for (const ClaimResult& claim : claims) {
     out += "\n## " + claim.id + ": " + std::string(to_string(claim.verdict)) + "\n\n> " + claim.quote + " (" +
            claim.where + ")\n\n";
-    const std::vector<std::string> titles = names_in(claim.evidence, kTitle),
-                                   scenes = names_in(claim.evidence, kScene);
+    const std::vector<std::string> titles = distinct(claim.evidence, kTitle),
+                                   scenes = distinct(claim.evidence, kScene);
     if (!scenes.empty()) {
       std::vector<std::string> head = {"expected " + claim.expectation};
       head.insert(head.end(), scenes.begin(), scenes.end());

@@ -3,16 +3,12 @@
 #include <algorithm>
 
 #include "bench/output/data.h"
+#include "bench/tables/distinct.h"
 
 namespace cscd::bench {
 namespace {
 
 using nlohmann::ordered_json;
-
-template <class Name>
-void add_new(std::vector<std::string>& names, const Name& name) {
-  if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-}
 
 ordered_json of_strategy(ordered_json column, const std::string& strategy) {
   for (auto& [key, value] : column.items())

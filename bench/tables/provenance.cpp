@@ -1,10 +1,10 @@
 #include "bench/tables/provenance.h"
 
 #include <algorithm>
-#include <functional>
 
 #include "bench/compare/side.h"
 #include "bench/output/markdown.h"
+#include "bench/tables/distinct.h"
 #include "scenes/base/joined.h"
 
 namespace cscd::bench {
@@ -25,15 +25,6 @@ std::string repetitions(const Record& record) {
   const std::size_t count = has_times ? record.strategies.front().ms.begin()->second.size() : 0;
   return std::to_string(count) +
          (record.processes > 1 ? " by " + std::to_string(record.processes) + " processes" : "");
-}
-
-// The texts without repetitions, in their order.
-std::vector<std::string> distinct(std::span<const Record> records,
-                                  const std::function<std::string(const Record&)>& text) {
-  std::vector<std::string> out;
-  for (const Record& record : records)
-    if (std::ranges::find(out, text(record)) == out.end()) out.push_back(text(record));
-  return out;
 }
 
 }  // namespace

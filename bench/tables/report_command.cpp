@@ -18,6 +18,7 @@
 #include "bench/query/view/html.h"
 #include "bench/query/view_page.h"
 #include "bench/records/record.h"
+#include "bench/records/shortfall.h"
 #include "bench/statistics/statistics.h"
 #include "bench/tables/claims.h"
 #include "bench/tables/filled_tables.h"
@@ -62,7 +63,11 @@ json strategy_of(const Record& record, const StrategyRecord& strategy) {
   for (const char* stage : {"refit", "rv_update", "traversal", "elementary"})
     if (const auto samples = stage_samples(record, strategy, stage); !samples.empty())
       stages[stage] = median(samples);
-  return {{"name", strategy.name}, {"guarantee", strategy.guarantee}, {"counts", counts}, {"stages", stages}};
+  return {{"name", strategy.name},
+          {"guarantee", strategy.guarantee},
+          {"counts", counts},
+          {"stages", stages},
+          {"marked", shortfall(record, strategy.name).has_value()}};
 }
 
 // What the page says of the record of a study, where there is one: its environment, the command that made

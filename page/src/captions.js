@@ -3,7 +3,7 @@ import { bitOf } from "./data.js";
 import { byId, element } from "./dom.js";
 import { coverOf } from "./painter.js";
 import { BLUE, CROSSED, GREY, ORANGE, PINK, RED, SKIN, SKY, YELLOW } from "./palette.js";
-import { CLOSE, contactWord, isBad, isOpen, many, markOf, VERDICTS } from "./words.js";
+import { CLOSE, contactWord, isBad, isOpen, many, markOf, number, VERDICTS } from "./words.js";
 
 export class Captions {
   constructor(recording) { this.recording = recording; }
@@ -33,7 +33,7 @@ export class Captions {
     if (strategy.has_clusters)
       facts.push(["clusters in force", strategy.clusters[interval].toLocaleString("en")],
         ["positive", `${this.positiveShare(strategy, interval)} % of triangles`]);
-    facts.push(["time of this answer here", `${Number(strategy.milliseconds[interval].toPrecision(3))} ms, one try`]);
+    facts.push(["time of this answer here", `${number(strategy.milliseconds[interval])} ms, one try`]);
     byId("facts").replaceChildren(...facts.flatMap(([name, value]) => [element("dt", name), element("dd", value)]));
   }
 

@@ -2,6 +2,7 @@
 import uPlot from "uplot";
 import { isDark } from "./dom.js";
 import { GREY } from "./palette.js";
+import { number } from "./words.js";
 
 // The looks of strategies and elementary tests (bench/tables/looks.json), which the report has in its document.
 let looks = { strategies: {}, tests: {} };
@@ -9,9 +10,6 @@ export const setLooks = (found) => { looks = found; };
 
 const FIRST = " --first";
 const baseOf = (name) => name.split("@")[0].replace(FIRST, "");
-
-// A figure as `cscd` writes it: three significant digits, all digits before the point, commas between thousands.
-export const number = (x) => (Math.abs(x) >= 999.5 ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));
 
 // The text of a value; none where there is no value.
 export const textOf = (value, text = number) => (value === null || value === undefined ? "" : text(value));

@@ -1,8 +1,9 @@
 // The report: the numbers of records in one page. Charts are in charts.js; accuracy, growth and history in studies.js.
-import { Chart, colourOf, dashOf, LINEAR, LOG, number, redrawCharts, setLooks, textOf } from "./charts.js";
+import { Chart, colourOf, dashOf, LINEAR, LOG, redrawCharts, setLooks, textOf } from "./charts.js";
 import { byId, element, isDark, prefersDark, radios, setDark } from "./dom.js";
 import { showAccuracy, showGrowth, showHistory } from "./studies.js";
 import { shapedTable, tableOf } from "./tables.js";
+import { number } from "./words.js";
 
 const COUNTERS = [["bvot", "overlap tests of bounding volumes (Figure 11)"], ["pctp", "triangle pairs left by culling (Figure 12)"], ["elementary_tests", "elementary tests"], ["not_positive", "triangles that are not positive"]];
 
@@ -197,11 +198,12 @@ class Report {
           piece.title = `${stage}: ${number(strategy.stages[stage])} ms`;
           bar.append(piece);
         }
-        bars.append(element("span", strategy.name), bar, element("span", `${number(total(strategy))} ms`));
+        bars.append(element("span", strategy.name), bar, element("span", `${number(total(strategy))} ms${strategy.marked ? "*" : ""}`));
       }
       box.append(details);
     });
-    this.source("stage-source", "Means over the timed intervals, the median over the repetitions.");
+    const marked = this.data.records.some((record) => record.strategies.some((strategy) => strategy.stages && strategy.marked));
+    this.source("stage-source", `Means over the timed intervals, the median over the repetitions. ${marked ? `${this.data.tables.mark_note}. ` : ""}`);
   }
 
   // The paper's tables in the paper's shape, the times of all strategies, and folded away every figure of every table.

@@ -1,8 +1,9 @@
 // The parts of the report about studies of their own: accuracy against time, growth, and history.
-import { aligned, Chart, colourOf, dashOf, LINEAR, LOG, number, textOf } from "./charts.js";
+import { aligned, Chart, colourOf, dashOf, LINEAR, LOG, textOf } from "./charts.js";
 import { byId, element, radios } from "./dom.js";
 import { GREY } from "./palette.js";
 import { tableOf } from "./tables.js";
+import { number } from "./words.js";
 
 // A thickness may be 0, which no logarithm has.
 const scaleOf = (study) => (study === "thickness" ? LINEAR : LOG);

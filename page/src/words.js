@@ -16,7 +16,8 @@ export const isBad = ({ true_motion: own, ...lines }) => (own ? own.touches + ow
 export const isOpen = ({ true_motion: own, undecided }) => (own ? own.undecided + own.close : undecided) > 0;
 export const markOf = (summary) => (isBad(summary) ? "\u2716" : isOpen(summary) ? "?" : "\u2714");
 
-const number = (x, digits = 4) => String(Number(x.toPrecision(digits)));
+// A figure as `cscd` writes it: three significant digits, all digits before the point, commas between thousands.
+export const number = (x) => (Math.abs(x) >= 999.5 ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));
 export const many = (count, one) => `${count.toLocaleString("en")} ${one}${count === 1 ? "" : "s"}`;
 export const both = (a, b, verb) => (a === b ? (a === "the surface" ? `it ${verb} itself` : `${a} ${verb} itself`) : `${a} ${verb} ${b}`);
 
@@ -33,5 +34,5 @@ export function momentOf(recording, position) {
 
 export function momentText(recording, position) {
   const { frame, seconds } = momentOf(recording, position);
-  return `frame ${Number(frame.toFixed(2))}` + (seconds === null ? "" : ` (${number(seconds, 3)} s)`);
+  return `frame ${Number(frame.toFixed(2))}` + (seconds === null ? "" : ` (${number(seconds)} s)`);
 }
