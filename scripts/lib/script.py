@@ -23,9 +23,16 @@ def parser_of(description):
     return argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
 
 
+def built_program(path):
+    program = pathlib.Path(path).resolve()
+    if not program.exists():
+        refuse(f"{path}: is not there; build it with scripts/reproduce, or name another with --program")
+    return program
+
+
 def program_option(parser):
     """The program that makes the document of figures."""
-    parser.add_argument("--program", type=pathlib.Path, default=ROOT / "build-release" / "cscd", help="default build-release/cscd")
+    parser.add_argument("--program", type=built_program, default=str(ROOT / "build-release" / "cscd"), help="default build-release/cscd")
 
 
 def run(main):
