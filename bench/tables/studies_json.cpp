@@ -118,11 +118,18 @@ const json& size_of(const std::string& study, const json& subject, const json& s
 
 json accuracy_json(const json& record) {
   std::map<std::string, std::map<std::string, Sum>> sums;
-  for (const json& workload : record.at("workloads"))
+  std::map<std::string, std::map<std::string, std::uint64_t>> stages;
+  for (const json& workload : record.at("workloads")) {
     for (const json& row : workload.at("rows"))
       if (row.at("queries") > 0)
         for (const std::string& kind : kinds_of(workload)) sums[kind][row.at("row")].add(row);
-  json out = json::object();
+    const std::string group = workload.at("group"), name = workload.at("name");
+    const json reached = workload.value("stages", json::object());
+    for (const auto& [stage, count] : reached.items())
+      for (const std::string& kind : {"group " + group, group + " " + name})
+        stages[kind][stage] += count.get<std::uint64_t>();
+  }
+  json out = {{"stages", stages}};
   for (const auto& [kind, rows] : sums)
     for (const auto& [row, sum] : rows) out[kind][row] = sum.as_json();
   return out;

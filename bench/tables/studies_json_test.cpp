@@ -24,8 +24,15 @@ TEST(Studies, SumAccuracyOverWorkloads) {
   first["time_error"] = {{"p99", 0.1}, {"largest_early", 0.2}, {"largest_late", 0}};
   second["time_error"] = {{"p99", 0.05}, {"largest_early", 0.3}, {"largest_late", 0.01}};
   const json record = {{"workloads",
-                        {{{"group", "hard"}, {"name", "cone"}, {"hardness", 0.0001}, {"rows", {first}}},
-                         {{"group", "hard"}, {"name", "edge"}, {"rows", {second}}},
+                        {{{"group", "hard"},
+                          {"name", "cone"},
+                          {"hardness", 0.0001},
+                          {"stages", {{"filter", 7}, {"referee", 3}}},
+                          {"rows", {first}}},
+                         {{"group", "hard"},
+                          {"name", "edge"},
+                          {"stages", {{"filter", 20}, {"referee", 10}}},
+                          {"rows", {second}}},
                          {{"group", "open"}, {"name", "set"}, {"rows", {open, none}}}}}};
   const json sums = accuracy_json(record), hard = sums.at("group hard").at("newton");
   EXPECT_EQ(hard.at("queries"), 40);
@@ -46,6 +53,8 @@ TEST(Studies, SumAccuracyOverWorkloads) {
   EXPECT_EQ(sums.at("sweep").at("newton").at("queries"), 47);
   EXPECT_EQ(sums.at("all").at("newton").at("queries"), 47);
   EXPECT_FALSE(sums.contains("family set"));
+  EXPECT_EQ(sums.at("stages").at("group hard"), (json{{"filter", 27}, {"referee", 13}}));
+  EXPECT_EQ(sums.at("stages").at("hard cone"), (json{{"filter", 7}, {"referee", 3}}));
 }
 
 json timed(const std::string& name, int intervals, double contacts) {

@@ -19,6 +19,10 @@ class Accuracy:
         found = self._sums.get(kind, {})
         return {row["name"]: SimpleNamespace(**nothing | found[row["name"]]) for row in self.rows if row["name"] in found}
 
+    def stages(self, kind):
+        """The numbers of queries that `filtered_exact` answered in each of its stages."""
+        return self._sums["stages"][kind]
+
     def is_sweep(self, name):
         return next(row for row in self.rows if row["name"] == name)["sweep"]
 

@@ -154,11 +154,7 @@ def cost_of_exactness(record):
         for name in [None] + (list(names) if group in ("scenes", "open") else []):
             if (group, name) not in ratios:
                 continue
-            stages = dict.fromkeys(("filter", "doubles", "integers", "referee"), 0)
-            for w in record.raw["workloads"]:
-                if w["group"] == group and name in (None, w["name"]):
-                    for stage, count in w["stages"].items():
-                        stages[stage] += count
+            stages = record.stages(f"group {group}" if name is None else f"{group} {name}")
             queries = sum(stages.values())
             r = ratios[group, name]
             lines.append([f"**{title}**" if name is None else f"`{name}`", f"{queries:,}",
