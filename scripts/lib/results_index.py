@@ -33,7 +33,7 @@ and its kind.
 The newest record of each kind is here. A record (`*.json.gz`) is never rewritten after its day; whatever is found out later stands
 in a `notes.md` in its folder, which says when it was written. A page beside a record may be made anew from it, as `scripts/pages`
 does with pages of how cost grows. Records are compressed; `cscd tables` and the scripts read them as they are. `cscd report` makes
-a page of all figures of a record, `scripts/figures` draws them as files, and `cscd tables --out` writes them as TeX; the few
+a page of all figures of a record, `scripts/figures` draws the paper's Figures 11 and 12, and `cscd tables --out` writes tables as TeX; the few
 pictures beside records are those that pages show.
 
 What single commits took, one small file each, is on [a page of its own](history/README.md), and so is [what was done to find
