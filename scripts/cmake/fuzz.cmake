@@ -26,5 +26,6 @@ function(cscd_fuzz_target name random)
     endif()
     add_test(NAME fuzz_${name} COMMAND ${program} --random ${random} ${stored})
   endif()
-  target_link_libraries(${program} PRIVATE ${rooms} cscd_flags)
+  # One of them compares with the fractions of GMP.
+  target_link_libraries(${program} PRIVATE ${rooms} ${GMPXX_LIBRARY} ${GMP_LIBRARY} cscd_flags)
 endfunction()
