@@ -1,10 +1,13 @@
 #include "bench/compare/history.h"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <fstream>
+#include <map>
 #include <span>
 #include <string_view>
 
@@ -21,6 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
+
+constexpr std::string_view kUnknownMark = "?";
 
 constexpr const char* kEnvironment[] = {"cpu",    "cores", "instruction_set", "compiler", "build_type",
                                         "kernel", "flags"};
@@ -50,6 +55,25 @@ Estimate stage_estimate(const std::vector<Record>& records, const std::string& r
   return bootstrap_median(processes.size() > 1 ? processes : repetitions);
 }
 
+// What a row lacks; null for nothing.
+ordered_json lacking_json(const Record& record, const std::string& row) {
+  const std::optional<Shortfall> lacking = shortfall(record, row);
+  if (!lacking) return nullptr;
+  return {{"contacts_expected", lacking->contacts_expected},
+          {"contacts_found", lacking->contacts_found},
+          {"intervals", lacking->intervals},
+          {"void_intervals", lacking->void_intervals}};
+}
+
+// The same, read back; nothing where the entry does not say it.
+std::optional<Shortfall> lacking_of(const ordered_json& row) {
+  const auto lacking = row.find("lacking");
+  if (lacking == row.end()) return std::nullopt;
+  if (lacking->is_null()) return Shortfall{};
+  return Shortfall{lacking->at("contacts_expected"), lacking->at("contacts_found"), lacking->at("intervals"),
+                   lacking->at("void_intervals")};
+}
+
 ordered_json row_json(const std::vector<Record>& records, const StrategyRecord& row) {
   ordered_json counters = ordered_json::object(), ms = ordered_json::object();
   for (const auto& [counter, column] : row.counts) {
@@ -59,11 +83,14 @@ ordered_json row_json(const std::vector<Record>& records, const StrategyRecord& 
   }
   for (const std::string& stage : stages_of(row))
     ms[stage] = estimate_json(stage_estimate(records, row.name, stage));
-  return {{"name", row.name},
-          {"guarantee", row.guarantee},
-          {"answers", answers_of(row)},
-          {"counters", std::move(counters)},
-          {"ms", std::move(ms)}};
+  ordered_json out = {{"name", row.name},
+                      {"guarantee", row.guarantee},
+                      {"answers", answers_of(row)},
+                      {"counters", std::move(counters)},
+                      {"ms", std::move(ms)}};
+  if (records.front().verification.strategy(row.name) != nullptr)
+    out["lacking"] = lacking_json(records.front(), row.name);
+  return out;
 }
 
 // Lower-case letters and digits of a text, with one dash between words.
@@ -88,10 +115,15 @@ bool is_commit(const std::string& text) {
          text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
+bool is_entry(const ordered_json& document) {
+  const std::string schema = document.value("schema", "");
+  return schema == kHistorySchema || schema == kFirstHistorySchema;
+}
+
 ordered_json read_entry(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   const ordered_json entry = ordered_json::parse(file, nullptr, false);
-  if (entry.is_discarded() || !entry.is_object() || entry.value("schema", "") != kHistorySchema)
+  if (entry.is_discarded() || !entry.is_object() || !is_entry(entry))
     throw InputError("history " + path.string() + ": is no entry of schema " + std::string(kHistorySchema) +
                      "; remove it, or write it anew with `cscd history --keep`");
   if (const std::string violation = schema_violation(entry, "history.schema.json"); !violation.empty())
@@ -102,6 +134,16 @@ ordered_json read_entry(const fs::path& path) {
     throw InputError("history " + path.string() + ": " + error.what());
   }
   return entry;
+}
+
+// All entries below a folder, in the order of their names.
+std::vector<fs::path> entries_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder, error))
+    if (file.is_regular_file() && file.path().extension() == ".json") files.push_back(file.path());
+  std::ranges::sort(files);
+  return files;
 }
 
 // What was measured of a scene. Times of two entries form one course only where this is the same.
@@ -133,13 +175,14 @@ void add_entry(const ordered_json& entry, const CourseChoice& choice, std::vecto
                  c.measured == measured;
         });
         if (course == courses.end()) {
-          courses.push_back({machine, scene_name, row_name, stage, measured, {}, {}, {}, {}, {}});
+          courses.push_back({machine, scene_name, row_name, stage, measured, {}, {}});
           course = courses.end() - 1;
         }
-        course->commits.push_back(entry.at("commit"));
-        course->dates.push_back(entry.at("committed"));
-        course->ms.push_back({ms.at("median"), ms.at("low"), ms.at("high")});
-        course->answers.push_back(row.at("answers"));
+        course->points.push_back({entry.at("commit"),
+                                  entry.at("committed"),
+                                  {ms.at("median"), ms.at("low"), ms.at("high")},
+                                  row.at("answers"),
+                                  lacking_of(row)});
       }
   }
 }
@@ -147,7 +190,8 @@ void add_entry(const ordered_json& entry, const CourseChoice& choice, std::vecto
 std::vector<ChangePoint> changes_of(const Course& course) {
   constexpr double kHalfWidth = 1.96;
   std::vector<CoursePoint> points;
-  for (const Estimate& ms : course.ms) {
+  for (const HistoryPoint& point : course.points) {
+    const Estimate& ms = point.ms;
     if (ms.low <= 0) return {};
     points.push_back({ms.value, std::log(ms.high / ms.low) / (2 * kHalfWidth)});
   }
@@ -164,17 +208,73 @@ std::string step_text(double ratio) {
 }
 
 std::string point_text(const Course& course, std::size_t i) {
+  const HistoryPoint& point = course.points[i];
   char text[128];
-  std::snprintf(text, sizeof text, "  %s  %.10s  %10.4g ms [%.4g, %.4g]",
-                course.dates[i].substr(0, 16).c_str(), course.commits[i].c_str(), course.ms[i].value,
-                course.ms[i].low, course.ms[i].high);
+  std::snprintf(text, sizeof text, "  %s  %.10s  %10.4g ms%-1s [%.4g, %.4g]",
+                point.committed.substr(0, 16).c_str(), point.commit.c_str(), point.ms.value,
+                mark_of(point).c_str(), point.ms.low, point.ms.high);
   std::string out = text;
   for (const ChangePoint& change : course.changes)
     if (change.first == i) out += "  <- " + step_text(change.ratio);
   return out + "\n";
 }
 
+// A word of the shell.
+std::string quoted(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+// What the marks of these points stand for; empty where there is none.
+std::string note_on_marks(std::span<const HistoryPoint* const> points) {
+  const auto has = [&](const std::string& mark) {
+    return std::ranges::any_of(points, [&](const HistoryPoint* point) { return mark_of(*point) == mark; });
+  };
+  std::string out;
+  if (has(std::string(kShortfallMark)))
+    out += std::string(kShortfallMark) +
+           " The row did not answer everything that a complete row answers, so its time is not for the same "
+           "work.\n";
+  if (has(std::string(kUnknownMark)))
+    out += std::string(kUnknownMark) + " The entry does not say whether the row answered everything.\n";
+  return out;
+}
+
 }  // namespace
+
+std::string mark_of(const HistoryPoint& point) {
+  if (!point.lacking) return std::string(kUnknownMark);
+  return is_short(*point.lacking) ? std::string(kShortfallMark) : "";
+}
+
+std::string committed_date(const fs::path& folder, const std::string& commit) {
+  if (!is_commit(commit))
+    throw InputError("history: the records name the commit " + commit +
+                     ", which is no name that git gives; measure again with a program that cscd built");
+  std::error_code error;
+  fs::path place = fs::absolute(folder, error);
+  while (place.has_relative_path() && !fs::is_directory(place, error)) place = place.parent_path();
+  const std::string command = "git -C " + quoted(place.string()) + " show --no-patch --format=%ct " +
+                              quoted(commit + "^{commit}") + " 2>/dev/null";
+  std::string said;
+  if (FILE* const git = popen(command.c_str(), "r")) {
+    char piece[64];
+    while (std::fgets(piece, sizeof piece, git) != nullptr) said += piece;
+    pclose(git);
+  }
+  std::int64_t second = 0;
+  if (const auto [end, fault] = std::from_chars(said.data(), said.data() + said.size(), second);
+      fault != std::errc{})
+    throw InputError(
+        "history " + folder.string() + ": git knows no commit " + commit +
+        " there, or is not installed; name a folder in the repository of the program that measured");
+  char text[64];
+  const std::time_t time = second;
+  std::tm parts{};
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S+00:00", gmtime_r(&time, &parts));
+  return text;
+}
 
 std::int64_t commit_second(const std::string& committed) {
   constexpr std::string_view kForm = "dddd-dd-ddTdd:dd:ddsdd:dd";  // d is a digit, s a sign
@@ -200,19 +300,14 @@ std::int64_t commit_second(const std::string& committed) {
       return local - (committed[19] == '-' ? -60 : 60) * zone;
     }
   }
-  throw InputError("the commit's date " + committed +
-                   " is not what git prints; take \"$(git show -s --format=%cI COMMIT)\"");
+  throw InputError("the commit's date " + committed + " is none that git knows; write the entry anew");
 }
 
 ordered_json history_entry(const Side& side, const std::string& committed) {
-  commit_second(committed);
   if (side.dirty || side.commit == "unknown")
     throw InputError(
         "history: the records are of no commit, as the sources differed from it; commit them and "
         "measure again");
-  if (!is_commit(side.commit))
-    throw InputError("history: the records name the commit " + side.commit +
-                     ", which is no name that git gives; measure again with a program that cscd built");
   ordered_json scenes = ordered_json::array(), environment = ordered_json::object();
   for (const char* key : kEnvironment)
     if (const ordered_json& all = side.scenes.begin()->second.front().environment; all.contains(key))
@@ -243,10 +338,14 @@ fs::path history_file(const fs::path& folder, const ordered_json& entry) {
 
 std::vector<Course> read_courses(const fs::path& folder, const CourseChoice& choice) {
   std::vector<ordered_json> entries;
-  std::error_code error;
-  for (const fs::directory_entry& file : fs::recursive_directory_iterator(folder, error))
-    if (file.is_regular_file() && file.path().extension() == ".json")
-      entries.push_back(read_entry(file.path()));
+  std::map<std::pair<std::string, std::string>, fs::path> seen;  // by machine and commit
+  for (const fs::path& file : entries_in(folder)) {
+    const ordered_json& entry = entries.emplace_back(read_entry(file));
+    const auto [same, is_new] = seen.try_emplace({machine_of(entry), entry.at("commit")}, file);
+    if (!is_new)
+      throw InputError("history " + file.string() + ": is of the commit and the machine of " +
+                       same->second.string() + ", and a commit counts once; remove one of the two");
+  }
   if (entries.empty())
     throw InputError("history " + folder.string() +
                      ": holds no entry; add one with scripts/compare-commits --keep or cscd history --keep");
@@ -261,16 +360,19 @@ std::vector<Course> read_courses(const fs::path& folder, const CourseChoice& cho
 
 ordered_json courses_json(const std::vector<Course>& courses) {
   ordered_json out = ordered_json::array();
+  std::vector<const HistoryPoint*> all;
   for (const Course& course : courses) {
     ordered_json points = ordered_json::array(), changes = ordered_json::array();
-    for (std::size_t i = 0; i < course.ms.size(); ++i) {
-      points.push_back({{"commit", course.commits[i]}, {"committed", course.dates[i]}});
-      points.back().update(estimate_json(course.ms[i]));
-      points.back()["answers"] = course.answers[i];
+    for (const HistoryPoint& point : course.points) {
+      points.push_back({{"commit", point.commit}, {"committed", point.committed}});
+      points.back().update(estimate_json(point.ms));
+      points.back()["mark"] = mark_of(point);
+      points.back()["answers"] = point.answers;
+      all.push_back(&point);
     }
     for (const ChangePoint& change : course.changes)
       changes.push_back(
-          {{"first", change.first}, {"commit", course.commits[change.first]}, {"ratio", change.ratio}});
+          {{"first", change.first}, {"commit", course.points[change.first].commit}, {"ratio", change.ratio}});
     out.push_back({{"machine", course.machine},
                    {"scene", course.scene},
                    {"row", course.row},
@@ -279,28 +381,32 @@ ordered_json courses_json(const std::vector<Course>& courses) {
                    {"points", std::move(points)},
                    {"changes", std::move(changes)}});
   }
-  return {{"schema", "cscd.courses/1"}, {"courses", std::move(out)}};
+  return {{"schema", "cscd.courses/2"}, {"note", note_on_marks(all)}, {"courses", std::move(out)}};
 }
 
 std::string courses_text(const std::vector<Course>& courses, bool every_point, bool with_single_commits) {
   std::string out;
   std::size_t single = 0;
+  std::vector<const HistoryPoint*> shown;
   for (const Course& course : courses) {
-    if (course.ms.size() < 2 && !with_single_commits) {
+    if (course.points.size() < 2 && !with_single_commits) {
       ++single;
       continue;
     }
     out += course.scene + ", " + course.row + ", " + course.stage + " on " + course.machine + ", " +
            std::to_string(course.measured.at("timed_intervals").size()) + " intervals, " +
            std::to_string(course.measured.at("rows").size()) +
-           " rows in turns: " + many(course.ms.size(), "commit") + ", " +
+           " rows in turns: " + many(course.points.size(), "commit") + ", " +
            many(course.changes.size(), "change") + "\n";
-    for (std::size_t i = 0; i < course.ms.size(); ++i) {
+    for (std::size_t i = 0; i < course.points.size(); ++i) {
       const bool is_change =
           std::ranges::any_of(course.changes, [&](const ChangePoint& change) { return change.first == i; });
-      if (every_point || is_change) out += point_text(course, i);
+      if (!every_point && !is_change) continue;
+      out += point_text(course, i);
+      shown.push_back(&course.points[i]);
     }
   }
+  out += note_on_marks(shown);
   if (single > 0) out += "left out: " + many(single, "course") + " of a single commit; --all shows them\n";
   return out;
 }

@@ -3,39 +3,55 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "bench/compare/side.h"
+#include "bench/records/shortfall.h"
 #include "bench/statistics/statistics.h"
 
 // What this project took, commit by commit: one small JSON file a commit and kind of machine, which is never
 // rewritten.
 namespace cscd::bench {
 
-inline constexpr std::string_view kHistorySchema = "cscd.history/1";
+// Entries of version 1 do not say what their rows lacked (HistoryPoint::lacking).
+inline constexpr std::string_view kHistorySchema = "cscd.history/2", kFirstHistorySchema = "cscd.history/1";
 
-// Seconds from the beginning of 1970 (UTC) to a commit's date as git prints it with %cI, such as
-// 2026-11-25T12:00:00+01:00. Throws InputError for any other text, and for a day or an hour that does not
-// exist.
+// Asks git for the date of a commit in the repository that holds the folder, which need not exist yet.
+// Returns it in UTC, such as 2026-11-25T12:00:00+00:00. Throws InputError for what is no name of a commit,
+// and for a commit that the repository does not have.
+std::string committed_date(const std::filesystem::path& folder, const std::string& commit);
+
+// Seconds from the beginning of 1970 (UTC) to a commit's date in an entry, which may name another time zone.
+// Throws InputError for any other text, and for a day or an hour that does not exist.
 std::int64_t commit_second(const std::string& committed);
 
-// Summarises the records of one commit: digests, counters, medians with intervals, environment. `committed`
-// is the commit's date as git prints it (%cI). Throws InputError for records of no commit, and for a date of
-// any other form: both become parts of a file's name.
+// Summarises the records of one commit: digests, counters, medians with intervals, what the rows lacked, and
+// the environment. `committed` is the commit's date. Throws InputError for records of no commit, and where
+// the verification failed.
 nlohmann::ordered_json history_entry(const Side& side, const std::string& committed);
 
 // Where an entry belongs: FOLDER/MACHINE/DATE-COMMIT.json.
 std::filesystem::path history_file(const std::filesystem::path& folder, const nlohmann::ordered_json& entry);
+
+// What one stage of a row took at one commit.
+struct HistoryPoint {
+  std::string commit, committed;
+  Estimate ms;
+  std::string answers;               // what the digests of all intervals come to
+  std::optional<Shortfall> lacking;  // nothing where the entry does not say what the row lacked
+};
+// What stands behind a time wherever it is printed: kShortfallMark where the row did not answer all that a
+// complete row answers, "?" where that is not known, else nothing.
+std::string mark_of(const HistoryPoint& point);
 
 // One stage of one row of one scene on one machine, in order of the commits. All its points measured the
 // same: frames, elementary test, timed intervals, and the rows that took turns and so shared the caches.
 struct Course {
   std::string machine, scene, row, stage;
   nlohmann::ordered_json measured;  // digest, elementary, timed_intervals, rows
-  std::vector<std::string> commits, dates;
-  std::vector<Estimate> ms;
-  std::vector<std::string> answers;  // what the digests of all intervals come to
+  std::vector<HistoryPoint> points;
   std::vector<ChangePoint> changes;
 };
 
@@ -44,8 +60,8 @@ struct CourseChoice {
   std::string machine, scene, row, stage;
 };
 
-// Reads every entry below a folder. Throws InputError, naming the file, for one that is not of the schema,
-// and for a folder without entries.
+// Reads every entry below a folder. Throws InputError, naming the file, for one that is not of the schema and
+// for a second one of the same commit and machine, and for a folder without entries.
 std::vector<Course> read_courses(const std::filesystem::path& folder, const CourseChoice& choice);
 
 nlohmann::ordered_json courses_json(const std::vector<Course>& courses);

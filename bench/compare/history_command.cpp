@@ -12,21 +12,22 @@ namespace cscd::bench {
 namespace {
 
 struct HistoryOptions {
-  std::string folder = "results/history", records, committed, json;
+  std::string folder = "results/history", records, json;
   CourseChoice choice{"", "", "", "total"};
   bool all = false, force = false;
 };
 
 void keep_entry(const HistoryOptions& options) {
-  if (options.committed.empty())
-    throw InputError(
-        "--keep: needs the commit's date; add --committed \"$(git show -s --format=%cI COMMIT)\"");
-  const nlohmann::ordered_json entry = history_entry(read_side(options.records), options.committed);
+  const Side side = read_side(options.records);
+  const nlohmann::ordered_json entry = history_entry(side, committed_date(options.folder, side.commit));
   const std::filesystem::path file = history_file(options.folder, entry);
   std::error_code error;
   std::filesystem::create_directories(file.parent_path(), error);
-  if (std::filesystem::exists(file, error))
-    throw InputError("history " + file.string() + ": is there, and a history is never rewritten");
+  const std::string commit = entry.at("commit");
+  for (const std::filesystem::directory_entry& kept :
+       std::filesystem::directory_iterator(file.parent_path(), error))
+    if (kept.path().filename().string().ends_with("-" + commit.substr(0, 10) + ".json"))
+      throw InputError("history " + kept.path().string() + ": is there, and a history is never rewritten");
   OutputFile(file, false).commit(json_text(entry));
   std::printf("kept: %s\n", file.string().c_str());
 }
@@ -50,7 +51,7 @@ void add_history(CLI::App& app) {
       "Show what each row took, commit by commit, and where its level changed.\n\n"
       "  cscd history                                        the changes of every row of several commits\n"
       "  cscd history --scene hand --row drvbc_fast          every commit of this row\n"
-      "  cscd history --keep FOLDER --committed DATE         add an entry of the records in FOLDER\n\n"
+      "  cscd history --keep FOLDER                          add an entry of the records in FOLDER\n\n"
       "An entry is one small JSON file a commit and kind of machine, and is never rewritten. Changes of "
       "level "
       "are\n"
@@ -62,9 +63,8 @@ void add_history(CLI::App& app) {
   command->add_option("--stage", options->choice.stage, "of this stage")->capture_default_str();
   command->add_flag("--all", options->all, "show courses of a single commit too");
   command->add_option("--keep", options->records,
-                      "add an entry of these records: files or folders, commas between");
-  command->add_option("--committed", options->committed,
-                      "the date of the commit, as git prints it with %cI; nothing else is taken");
+                      "add an entry of these records: files or folders, commas between. Git is asked for the "
+                      "commit's date,\nso the folder of entries lies in the repository");
   command->add_option("--json", options->json, "where the courses go as JSON; - is standard output");
   command->add_flag("--force", options->force, "replace that file if it exists");
   command->callback([options] { history(*options); });

@@ -8,6 +8,7 @@
 #include "bench/output/schema.h"
 #include "core/base/error.h"
 #include "core/base/test_folder.h"
+#include "core/base/test_refusal.h"
 
 namespace cscd::bench {
 namespace {
@@ -27,6 +28,10 @@ ordered_json entry_of(const std::string& commit, const std::string& committed, d
           for (double& ms : repetition) ms *= factor;
   }
   return history_entry(side_of(std::move(records), "a test"), committed);
+}
+
+bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
 }
 
 TEST(History, KeepsWhatACommitTook) {
@@ -50,15 +55,15 @@ TEST(History, RefusesRecordsOfNoCommit) {
 }
 
 // Both become parts of a file's name, and an entry that cannot be read would stand in the way of all others.
-TEST(History, TakesNoDateAndNoCommitThatGitDoesNotName) {
-  for (const char* date :
-       {"", "yesterday", "../../x", "2026-11-25", "2026-11-25T10:00:00Z", "2026-11-25T10:00:00",
-        "2026-11-31T10:00:00+00:00", "2026-13-01T10:00:00+00:00", "2026-11-25T24:00:00+00:00",
-        "2026-11-25T10:60:00+00:00", "2026-11-25 10:00:00 +0000", "2026-11-25T10:00:00+24:00",
-        "2026-11-25T10:00:00+00:00/../../../x", "../../../../T10:00:00+00:00"})
-    EXPECT_THROW(entry_of("aaaaaaaaaaaaaaaa", date, 1), InputError) << date;
-  for (const char* commit : {"unknown", "../../../x", "HEAD", "aaaaaa", "AAAAAAAAAA"})
-    EXPECT_THROW(entry_of(commit, "2026-11-25T10:00:00+00:00", 1), InputError) << commit;
+TEST(History, TakesNoCommitThatGitDoesNotName) {
+  const cscd::test::Folder scratch;  // in no repository
+  for (const char* commit : {"unknown", "../../../x", "HEAD", "aaaaaa", "AAAAAAAAAA", "$(touch x)"})
+    EXPECT_TRUE(says(cscd::test::refusal([&] { committed_date(scratch.path, commit); }),
+                     "which is no name that git gives"))
+        << commit;
+  EXPECT_TRUE(
+      says(cscd::test::refusal([&] { committed_date(scratch.path / "it's" / "none", "aaaaaaaaaaaaaaaa"); }),
+           "git knows no commit aaaaaaaaaaaaaaaa there"));
   Record record = test::small_record();
   record.environment["cores"] = "../../2";
   const ordered_json entry = history_entry(side_of({record}, "a test"), "2026-11-25T10:00:00+00:00");
@@ -66,6 +71,12 @@ TEST(History, TakesNoDateAndNoCommitThatGitDoesNotName) {
 }
 
 TEST(History, CountsFromTheZoneThatADateNames) {
+  for (const char* date :
+       {"", "yesterday", "../../x", "2026-11-25", "2026-11-25T10:00:00Z", "2026-11-25T10:00:00",
+        "2026-11-31T10:00:00+00:00", "2026-13-01T10:00:00+00:00", "2026-11-25T24:00:00+00:00",
+        "2026-11-25T10:60:00+00:00", "2026-11-25 10:00:00 +0000", "2026-11-25T10:00:00+24:00",
+        "2026-11-25T10:00:00+00:00/../../../x", "../../../../T10:00:00+00:00"})
+    EXPECT_THROW(commit_second(date), InputError) << date;
   EXPECT_EQ(commit_second("1970-01-02T00:00:00+00:00"), 24 * 3600);
   EXPECT_EQ(commit_second("2024-02-29T12:00:00+02:30"), commit_second("2024-02-29T09:30:00+00:00"));
   EXPECT_EQ(commit_second("2026-11-24T23:30:00-01:00"), commit_second("2026-11-25T00:30:00+00:00"));
@@ -87,6 +98,52 @@ TEST(History, NamesTheEntryWhoseDateIsNone) {
   }
 }
 
+// One commit that is kept twice, under two dates, counts once.
+TEST(History, RefusesASecondEntryOfACommit) {
+  const cscd::test::Folder scratch;
+  for (const char* day : {"2026-11-24", "2026-11-25"})
+    std::ofstream(scratch.path / (std::string(day) + ".json"))
+        << json_text(entry_of("aaaaaaaaaaaaaaaa", std::string(day) + "T10:00:00+00:00", 1));
+  const std::string why = cscd::test::refusal([&] { read_courses(scratch.path, {}); });
+  EXPECT_TRUE(says(why, "2026-11-25.json: is of the commit and the machine of ")) << why;
+  EXPECT_TRUE(says(why, "2026-11-24.json, and a commit counts once; remove one of the two")) << why;
+}
+
+// Mutation: a row that the entry says nothing of counts as one that kept all contacts.
+TEST(History, MarksTimesOfRowsThatDidNotAnswerEverything) {
+  const cscd::test::Folder scratch;
+  ordered_json entry = entry_of("aaaaaaaaaaaaaaaa", "2026-11-25T10:00:00+00:00", 1);
+  EXPECT_EQ(schema_violation(entry, "history.schema.json"), "");
+  const auto shown = [&] {
+    std::ofstream(scratch.path / "a.json") << json_text(entry);
+    return read_courses(scratch.path, {"", "", "", "traversal"});
+  };
+  const auto mark = [](const std::vector<Course>& courses, const std::string& row) {
+    for (const Course& course : courses)
+      if (course.row == row) return mark_of(course.points.at(0));
+    return std::string("no such row");
+  };
+  std::vector<Course> courses = shown();
+  EXPECT_EQ(mark(courses, "slow"), "");
+  EXPECT_EQ(mark(courses, "swift"), "*") << "it kept 2 of 3 contacts";
+  std::string text = courses_text(courses, true, true);
+  EXPECT_TRUE(says(text, " ms* [")) << text;
+  EXPECT_TRUE(says(text, "\n* The row did not answer everything")) << text;
+  EXPECT_FALSE(says(text, "?")) << text;
+  EXPECT_EQ(courses_json(courses)["courses"][0]["points"][0]["mark"], "");
+  EXPECT_TRUE(says(courses_json(courses)["note"], "* The row did not answer everything"));
+
+  entry["schema"] = kFirstHistorySchema;
+  for (ordered_json& row : entry["scenes"][0]["rows"]) row.erase("lacking");
+  EXPECT_EQ(schema_violation(entry, "history.schema.json"), "");
+  courses = shown();
+  for (const char* row : {"slow", "swift"}) EXPECT_EQ(mark(courses, row), "?") << row;
+  text = courses_text(courses, true, true);
+  EXPECT_TRUE(says(text, " ms? [")) << text;
+  EXPECT_TRUE(says(text, "\n? The entry does not say whether the row answered everything.\n")) << text;
+  EXPECT_FALSE(says(text, "*")) << text;
+}
+
 TEST(History, FindsTheCommitThatChangedARow) {
   const cscd::test::Folder scratch;
   const fs::path& folder = scratch.path;
@@ -102,7 +159,7 @@ TEST(History, FindsTheCommitThatChangedARow) {
   const std::vector<Course> courses = read_courses(folder, {"", "hand", "slow", "traversal"});
   ASSERT_EQ(courses.size(), 1u);
   ASSERT_EQ(courses[0].changes.size(), 1u);
-  EXPECT_EQ(courses[0].commits[courses[0].changes[0].first], "6666666666666666");
+  EXPECT_EQ(courses[0].points[courses[0].changes[0].first].commit, "6666666666666666");
   EXPECT_NEAR(courses[0].changes[0].ratio, 0.7, 1e-6);
   EXPECT_NE(courses_text(courses, true, false).find("<- 1.43 times faster"), std::string::npos)
       << courses_text(courses, true, false);
@@ -112,9 +169,9 @@ TEST(History, FindsTheCommitThatChangedARow) {
       << json_text(entry_of("9999999999999999", "2026-11-18T10:00:00+00:00", 3, {1, 3}));
   const std::vector<Course> both = read_courses(folder, {"", "hand", "slow", "traversal"});
   ASSERT_EQ(both.size(), 2u);
-  EXPECT_EQ(both[0].commits.size(), 8u);
+  EXPECT_EQ(both[0].points.size(), 8u);
   EXPECT_EQ(both[0].changes.size(), 1u);
-  EXPECT_EQ(both[1].commits.size(), 1u);
+  EXPECT_EQ(both[1].points.size(), 1u);
   const std::string some = courses_text(both, false, false);
   EXPECT_EQ(some.find(": 1 commit,"), std::string::npos) << some;
   EXPECT_NE(some.find("left out: 1 course of a single commit; --all shows them"), std::string::npos) << some;

@@ -63,6 +63,17 @@ class Program : public testing::Test {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text("+out"), text("+errors")};
   }
 
+  // Makes the folder a repository with one commit, which is committed at 10:00 UTC, and has a record name
+  // that commit without changes.
+  void commit_for(const std::string& record) const {
+    const Ran ran = run(
+        "git init -q . && GIT_COMMITTER_DATE=2026-11-25T12:00:00+02:00 git -c user.name=a -c user.email=a "
+        "commit -q --allow-empty -m one && sed -i \"s/\\(.commit.: .\\)[0-9a-f]*/\\1$(git rev-parse HEAD)/; "
+        "s/\\(.dirty.:\\) true/\\1 false/\" " +
+        record);
+    ASSERT_EQ(ran.status, 0) << ran.errors;
+  }
+
   // A refusal: exit status 2 and one line.
   void expect_refused(const Ran& ran, const std::string& reason) const {
     EXPECT_EQ(ran.status, 2) << ran.errors;

@@ -103,6 +103,9 @@ export function showGrowth(study, { looks, tables }) {
 const measurementOf = ({ scene, machine, measured }) =>
   `${scene} on ${machine}: ${measured.timed_intervals.length} intervals, ${measured.rows.length} rows in turns`;
 
+// What a row took at a commit, with the mark that says whether it answered everything.
+const marked = ({ median, mark }) => short(median) + mark;
+
 export function showHistory(history) {
   const places = distinct(history.courses.map(measurementOf)), select = byId("history-scene");
   select.append(...places.map((place) => new Option(place, place)));
@@ -116,15 +119,15 @@ export function showHistory(history) {
     const order = commits(), shown = courses(), nameOf = (i) => (order[i] ? order[i].slice(0, 7) : "");
     return {
       data: aligned(shown.map((course) => course.points.map((point) => ({ x: order.indexOf(point.commit), y: point.median })))),
-      series: shown.map((course) => ({ label: course.row, stroke: colourOf(course.row), dash: dashOf(course.row), points: { show: true, size: 6 }, ...SPAN })),
+      series: shown.map((course) => ({ label: course.row + distinct(course.points.map((point) => point.mark)).join(""), stroke: colourOf(course.row), dash: dashOf(course.row), points: { show: true, size: 6 }, ...SPAN })),
       x: { label: "commit", scale: LINEAR, range: [-0.4, order.length - 0.6], name: nameOf, values: (_, ticks) => ticks.map((tick) => (Number.isInteger(tick) ? nameOf(tick) : "")) },
       y: { label: "ms an interval", scale: LOG },
       hooks: { draw: [(plot) => shown.forEach((course) => course.changes.forEach((change) => markChange(plot, order.indexOf(change.commit), course.points[change.first].median, percent(change.ratio), colourOf(course.row))))] },
     };
   });
   const list = () => {
-    const rows = courses().flatMap((course) => course.changes.map((change) => [course.row, change.commit.slice(0, 10), number(course.points[change.first - 1].median), number(course.points[change.first].median), percent(change.ratio)]));
-    byId("history-list").replaceChildren(rows.length > 0 ? tableOf(["row", "first commit of the new level", "ms before", "ms at it", "level"], rows) : element("p", "No change of level was found."));
+    const rows = courses().flatMap((course) => course.changes.map((change) => [course.row, change.commit.slice(0, 10), marked(course.points[change.first - 1]), marked(course.points[change.first]), percent(change.ratio)]));
+    byId("history-list").replaceChildren(rows.length > 0 ? tableOf(["row", "first commit of the new level", "ms before", "ms at it", "level"], rows) : element("p", "No change of level was found."), element("p", history.note));
   };
   select.addEventListener("change", () => {
     chart.draw();

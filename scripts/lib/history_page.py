@@ -10,6 +10,11 @@ from tracked import tracked_files
 FOLDER = ROOT / "results" / "history"
 
 
+def marked(point):
+    """What a row took at a commit, with the mark of one that did not answer everything, or is not known to have."""
+    return number(point["median"]) + point["mark"].replace("*", "\\*")
+
+
 def page(program):
     """The page, from the entries that git tracks."""
     with tempfile.TemporaryDirectory() as folder:
@@ -17,7 +22,8 @@ def page(program):
             copy = pathlib.Path(folder, path.relative_to(FOLDER))
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(path, copy)
-        courses = answer_of(program, "history", folder)["courses"]
+        history = answer_of(program, "history", folder)
+    courses = history["courses"]
     lines = ["# What each commit took", "", "Made by `scripts/pages` from the entries beside this page (`cscd history`): whole queries, "
              "medians over processes. `cscd report results/FOLDER --history results/history` draws them.", ""]
     if (FOLDER / "notes.md").exists():
@@ -30,9 +36,8 @@ def page(program):
         lines += [f"## {machine}", "", f"{len(commits)} commits." + (
             f" {once} more rows of scenes were measured at a single commit." if once else ""), ""]
         rows = [[course["scene"], f"`{course['row']}`", f"`{change['commit'][:10]}`",
-                 number(course["points"][change["first"] - 1]["median"]), number(course["points"][change["first"]]["median"]),
-                 f"{100 * (change['ratio'] - 1):+.1f} %"] for course in several for change in course["changes"]]
+                 marked(course["points"][change["first"] - 1]), marked(course["points"][change["first"]]), f"{100 * (change['ratio'] - 1):+.1f} %"] for course in several for change in course["changes"]]
         lines += table(["scene", "row", "first commit of the new level", "ms before", "ms at it", "level"], rows,
                        text_columns=3) if rows else ["No change of level was found."]
         lines.append("")
-    return "\n".join(lines)
+    return "\n".join(lines + [line.replace("* ", "\\* ", 1) + "\n" for line in history["note"].splitlines()])
