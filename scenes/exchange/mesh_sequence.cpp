@@ -1,8 +1,10 @@
 #include "scenes/exchange/mesh_sequence.h"
 
 #include <fstream>
+#include <map>
 
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 #include "scenes/exchange/mesh_cache.h"
 #include "scenes/exchange/sequence_files.h"
 #include "scenes/exchange/surface_file.h"
@@ -105,11 +107,18 @@ class FileSequence final : public MeshSequence {
     return format + (files_.size() > 1 ? " sequence" : "");
   }
   std::vector<std::string> notes() const override {
-    return notes_of(first_, faces_,
-                    files_.size() < 2 ? alone_
-                                      : "the frames are " + std::to_string(files_.size()) + " files, " +
-                                            files_.front().filename().string() + " to " +
-                                            files_.back().filename().string());
+    std::vector<std::string> notes =
+        notes_of(first_, faces_,
+                 files_.size() < 2
+                     ? alone_
+                     : "the frames are " + std::to_string(files_.size()) + " files, " +
+                           files_.front().filename().string() + " to " + files_.back().filename().string());
+    if (later_.empty()) return notes;
+    const auto& [frame, said] = *later_.begin();
+    for (const std::string& note : said)
+      notes.push_back(files_[frame].filename().string() + ": " + note +
+                      (later_.size() > 1 ? "; likewise " + many(later_.size() - 1, "further file") : ""));
+    return notes;
   }
   std::size_t frame_count() const override { return files_.size(); }
   double first_frame() const override { return first_frame_; }
@@ -129,6 +138,7 @@ class FileSequence final : public MeshSequence {
     if (surface.faces != first_.faces)
       throw InputError(name +
                        ": has other faces than the first file; export a surface whose faces stay the same");
+    if (surface.notes != first_.notes && !surface.notes.empty()) later_[frame] = std::move(surface.notes);
     positions = std::move(surface.positions);
   }
 
@@ -145,6 +155,7 @@ class FileSequence final : public MeshSequence {
   double first_frame_;
   std::string alone_;  // the note on a single file
   SurfaceFile first_;
+  std::map<std::size_t, std::vector<std::string>> later_;  // notes on frames that the first one has not
   CutFaces faces_;
 };
 

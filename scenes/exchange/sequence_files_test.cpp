@@ -162,5 +162,23 @@ TEST_F(Sequence, CutsItsPolygonsOnce) {
       says(test::refusal([&] { other->read_frame(1, positions); }), "has other faces than the first file"));
 }
 
+// Mutation: the notes on the first frame stand for all.
+TEST_F(Sequence, NotesWhatOnlyLaterFramesHold) {
+  const std::string plain = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  for (int f = 0; f < 4; ++f)
+    test::write(scratch.path / ("f." + std::to_string(f) + ".obj"), f < 2 ? plain : "wibble 1\n" + plain);
+  const auto sequence = open_mesh_sequence(scratch.path / "f.0.obj");
+  const std::size_t before = sequence->notes().size();
+  std::vector<Vec3> positions;
+  for (const int round : {1, 2}) {
+    for (std::size_t f = 0; f < 4; ++f) sequence->read_frame(f, positions);
+    ASSERT_EQ(sequence->notes().size(), before + 1) << round;
+  }
+  EXPECT_EQ(
+      sequence->notes().back(),
+      "f.2.obj: line 1 begins with a word that OBJ files do not have, and is left out; likewise 1 further "
+      "file");
+}
+
 }  // namespace
 }  // namespace cscd::scenes

@@ -257,10 +257,6 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
   for (std::size_t c = 0; c < report.components; ++c) report.chosen_components.push_back(c);
   if (options.survey) report.component_bones.assign(report.components, 0);
   report.chosen_triangles = surface.faces.triangles.size();
-  report.notes = sequence->notes();
-  if (std::string loose = note_on_loose_vertices(sequence->vertex_count(), sequence->triangles());
-      !loose.empty())
-    report.notes.push_back(std::move(loose));
   write_source_map(surface.sources, sources);
 
   PointCacheWriter writer(cache, {surface.faces.triangles, surface.vertex.size(), {}, false}, false);
@@ -271,6 +267,10 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
     writer.append({used, {}});
   }
   writer.finish();
+  report.notes = sequence->notes();
+  if (std::string loose = note_on_loose_vertices(sequence->vertex_count(), sequence->triangles());
+      !loose.empty())
+    report.notes.push_back(std::move(loose));
   return report;
 }
 
