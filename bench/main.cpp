@@ -9,6 +9,7 @@
 #include <string>
 #include <unistd.h>
 
+#include "bench/answer/answer.h"
 #include "bench/cli/interface_commands.h"
 #include "bench/command_line/command.h"
 #include "bench/command_line/standard_streams.h"
@@ -16,6 +17,7 @@
 #include "bench/output/output.h"
 #include "core/base/error.h"
 #include "core/base/instruction_set.h"
+#include "core/base/memory.h"
 #include "scenes/base/temporaries.h"
 
 namespace {
@@ -101,6 +103,8 @@ int run(int argc, char** argv) {
     cscd::bench::end_by_broken_pipe();
   } catch (const cscd::InputError& error) {
     return complain(error.what());
+  } catch (const cscd::MemoryShortage& shortage) {
+    return complain(cscd::bench::too_many_pairs(shortage, "").what());
   } catch (const std::bad_alloc&) {
     return complain(
         "out of memory; use a smaller input, a larger --memory for a model file, or a machine with more");

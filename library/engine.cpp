@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/memory.h"
 #include "core/base/number_text.h"
 #include "core/base/rounding.h"
 #include "core/detect/contact_geometry.h"
@@ -26,6 +27,9 @@ constexpr int kFilteredSteps = 16;  // after a step in which something excluded 
 // The first reach of a search for bounds of vertices, in mean edges, and by how much each further one is
 // wider.
 constexpr double kFirstReach = 0.5, kWider = 4;
+// The pairs of vertices that are far from all others are looked for one by one where these are fewer than
+// this part of all. Each takes some ten passes over the mesh.
+constexpr std::size_t kFew = 64;
 
 // A vertex's coordinates stand side by side in both, so the caller's rows are read where they are.
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
@@ -149,6 +153,9 @@ void SelfCollision::Engine::write(const Motion& motion, Answer& out) const {
       out.start_crossings.push_back({static_cast<int>(a), static_cast<int>(b)});
   if (!crossed_.pairs.empty()) std::sort(out.start_crossings.begin(), out.start_crossings.end());
   out.contacts.clear();
+  const std::size_t count = answer_.found.contacts.size();
+  if (count > out.contacts.capacity())
+    require_memory(count, 3 * sizeof(Contact) * count);  // the list doubles
   for (const cscd::Contact& contact : answer_.found.contacts)
     out.contacts.push_back(written(mesh_, contact, motion));
   const auto own = static_cast<std::ptrdiff_t>(out.contacts.size());
@@ -209,6 +216,7 @@ SelfCollision::PathsAnswer SelfCollision::Engine::true_motion(const Paths& paths
 
 // The near is found first: it says of most vertices that they get less than the cap, so that farther pairs
 // are looked for, and kept, only where they matter. A wide cap then takes no more memory than a narrow one.
+// Where few vertices are far from everything, their pairs are looked for one by one.
 std::vector<double> SelfCollision::Engine::vertex_bounds(std::span<const Vec3> pose, double cap) {
   if (!(cap >= 0) || !std::isfinite(thickness_.largest() + 4 * cap))
     throw InputError("vertex_bounds: cap " + exact_text(cap) +
@@ -217,30 +225,41 @@ std::vector<double> SelfCollision::Engine::vertex_bounds(std::span<const Vec3> p
   double reach = edge > 0 ? std::min(cap, kFirstReach * edge) : cap;
   std::vector<double> caps(mesh_.vertex_count(), reach), most(mesh_.vertex_count(), cap);
   for (;;) {
-    const VertexBounds bounds = bounds_within(pose, caps);
+    const VertexBounds bounds = bounds_within(pose, caps, {});
     if (reach >= cap) return bounds.find();
     const std::vector<double> known = bounds.find_most(cap);
-    for (std::size_t v = 0; v < most.size(); ++v) most[v] = std::min(most[v], known[v]);
-    if (*std::ranges::max_element(most) <= reach) return bounds.find();
+    std::vector<VertexId> far;
+    for (std::size_t v = 0; v < most.size(); ++v) {
+      most[v] = std::min(most[v], known[v]);
+      if (most[v] > reach) far.push_back(VertexId{static_cast<std::int32_t>(v)});
+    }
+    if (far.empty()) return bounds.find();
+    if (far.size() <= most.size() / kFew) return bounds_within(pose, most, far).find();
     reach = std::min(cap, kWider * reach);
     for (std::size_t v = 0; v < most.size(); ++v) caps[v] = std::min(most[v], reach);
   }
 }
 
-VertexBounds SelfCollision::Engine::bounds_within(std::span<const Vec3> pose,
-                                                  const std::vector<double>& caps) {
+VertexBounds SelfCollision::Engine::bounds_within(std::span<const Vec3> pose, const std::vector<double>& caps,
+                                                  std::span<const VertexId> far) {
   // Pairs farther apart than this stay apart while no vertex moves farther than its cap. The slack exceeds
   // the roundings of the sums.
-  std::vector<double> moved = caps;
-  if (beside_) moved.resize(moved.size() + beside_->positions.size(), 0);
-  const double widest = *std::ranges::max_element(caps);
-  const double slack = 32 * kUnitRoundoff * (thickness_.largest() + 2 * widest);
-  const bool same = std::ranges::all_of(caps, [&](double own) { return own == widest; });
-  const Thickness reach = same ? Thickness(thickness_.largest() + 2 * widest + slack)
-                               : Thickness(thickness_.largest() + slack, moved);
+  const auto reach_of = [&](std::vector<double>& moved) {
+    moved.resize(mesh_.vertex_count() + (beside_ ? beside_->positions.size() : 0), 0);
+    const double widest = *std::ranges::max_element(moved);
+    const double slack = 32 * kUnitRoundoff * (thickness_.largest() + 2 * widest);
+    const bool same = std::ranges::all_of(std::span(moved).first(mesh_.vertex_count()),
+                                          [&](double own) { return own == widest; });
+    return same ? Thickness(thickness_.largest() + 2 * widest + slack)
+                : Thickness(thickness_.largest() + slack, moved);
+  };
   const Motion rest(pose, pose);
   VertexBounds bounds(caps);
-  search().find(rest, reach, found_);
+  std::vector<double> moved = caps, near = caps;
+  for (const VertexId v : far) near[+v] = 0;
+  search().find(rest, reach_of(near), found_);
+  const Thickness reach = reach_of(moved);
+  if (!far.empty()) search().find_more(rest, reach, far, found_);
   bounds.add(mesh_, rest, found_, thickness_);
   if (obstacles_) {
     obstacles_->find_candidates(rest, reach, found_);
@@ -370,6 +389,7 @@ void SelfCollision::Engine::leave_out_ongoing(const Motion& motion, bool first) 
 }
 
 void SelfCollision::Engine::append(const TriangleMesh& mesh, Candidates& out) const {
+  require_memory(found_.size(), 3 * sizeof(out.edge_edge[0]) * found_.size());
   for (const FeaturePair& pair : found_)
     if (pair.kind == FeaturePair::Kind::vertex_face)
       out.vertex_face.push_back({pair.a, pair.b});

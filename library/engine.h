@@ -78,8 +78,10 @@ class SelfCollision::Engine {
   CrossingSearch& crossing_search();
   CandidateSearch& search();
 
-  // The pairs that matter while no vertex moves farther than its cap.
-  VertexBounds bounds_within(std::span<const Vec3> pose, const std::vector<double>& caps);
+  // The pairs that matter while no vertex moves farther than its cap. The caps of vertices that are not
+  // `far` are no longer than they have to be for a search by culling; those of others may have any length.
+  VertexBounds bounds_within(std::span<const Vec3> pose, const std::vector<double>& caps,
+                             std::span<const VertexId> far);
 
   void step_itself(Question& question, const Motion& motion, Session::Sought sought);
   std::size_t leave_out();

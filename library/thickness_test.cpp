@@ -3,6 +3,7 @@
 #include <limits>
 #include <random>
 
+#include "core/base/test_memory.h"
 #include "core/base/test_refusal.h"
 #include "library/test_steps.h"
 
@@ -32,6 +33,39 @@ void draw_exclusions(std::uint64_t seed, const SceneStep& step, Options& options
     options.exclude.rest_distance = 0.2;
     expected.exclude_near(step.all_start, 0.2);
   }
+}
+
+// Mutations: contacts are not looked at while they are gathered; candidates are not.
+TEST(Thickness, SaysSoBeforePairsTakeMoreMemoryThanThereIs) {
+  if (!test::kMemoryCanBeLimited) GTEST_SKIP() << "a sanitizer takes all address space";
+  constexpr int kSide = 20;
+  constexpr double kFar = 4.5;  // edges
+  FaceRows faces(4 * kSide * kSide, 3);
+  Rows pose(2 * (kSide + 1) * (kSide + 1), 3);
+  for (int sheet = 0, v = 0, f = 0; sheet < 2; ++sheet)
+    for (int i = 0; i <= kSide; ++i)
+      for (int j = 0; j <= kSide; ++j, ++v) {
+        pose.row(v) << i, j, 0.4 * sheet + 0.01 * std::sin(v);
+        if (i == kSide || j == kSide) continue;
+        faces.row(f++) << v, v + kSide + 1, v + 1;
+        faces.row(f++) << v + 1, v + kSide + 1, v + kSide + 2;
+      }
+  Options options;
+  options.thickness = kFar;
+  SelfCollision body(faces, pose, options);
+  body.is_free(pose, pose), body.candidates(pose, pose, 0);  // prepare
+  const auto refused = [&](const auto& ask) {
+    const MemoryLimit limit(32 << 20);
+    return refusal<std::bad_alloc>(ask);
+  };
+  const std::string contacts = refused([&] { body.all_contacts(pose, pose); }),
+                    candidates = refused([&] { body.candidates(pose, pose, 4 * kFar); });
+  for (const std::string& why : {contacts, candidates}) {
+    EXPECT_NE(why.find(" pairs of features are near enough so far, and going on takes "), std::string::npos)
+        << why;
+    EXPECT_NE(why.find("give a smaller thickness or radius"), std::string::npos) << why;
+  }
+  EXPECT_GT(body.all_contacts(pose, pose).contacts.size(), 300'000u) << "with as much memory as it takes";
 }
 
 TEST(Thickness, AnswersRandomStepsAsASearchOfAllFeaturePairsDoes) {

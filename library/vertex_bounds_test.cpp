@@ -166,6 +166,53 @@ TEST(VertexBounds, WideCapsFindTheNearFirst) {
   for (const double bound : SelfCollision(faces, pose).vertex_bounds(pose, 12)) EXPECT_EQ(bound, 12);
 }
 
+// What is far from everything is held against all others by itself, whatever the cap, and its bounds and
+// those of the others leave every pair of features apart. Mutation: the pairs of its edges or of its faces
+// are left out.
+TEST(VertexBounds, FarVerticesAreHeldAgainstAll) {
+  constexpr int kSide = 16, kSheet = (kSide + 1) * (kSide + 1);
+  FaceRows faces(2 * kSide * kSide + 1, 3);
+  Rows pose(kSheet + 4, 3);  // a sheet, a triangle beside it, and a particle
+  for (int i = 0, f = 0; i <= kSide; ++i)
+    for (int j = 0; j <= kSide; ++j) {
+      const int v = i * (kSide + 1) + j;
+      pose.row(v) << i, j, 0.1 * std::sin(v);
+      if (i == kSide || j == kSide) continue;
+      faces.row(f++) << v, v + kSide + 1, v + 1;
+      faces.row(f++) << v + 1, v + kSide + 1, v + kSide + 2;
+    }
+  faces.row(faces.rows() - 1) << kSheet, kSheet + 1, kSheet + 2;
+  // The first edge of the triangle is nearest to an edge of the sheet.
+  pose.bottomRows(4) << 46, 8.3, -20, 46, 8.3, 20, 60, 8, 0, 2, 2, 90;
+  for (const double thickness : {0.0, 0.05}) {
+    SelfCollision::Options options;
+    options.thickness = thickness;
+    SelfCollision body(faces, pose, options);
+    const std::vector<double> bounds = body.vertex_bounds(pose, 1000);
+    for (int v = kSheet; v < kSheet + 3; ++v) EXPECT_GT(bounds[std::size_t(v)], 4) << v;
+    EXPECT_LT(bounds[0], 1);
+    const SelfCollision::Candidates near = body.candidates(pose, pose, 200);
+    EXPECT_GT(near.vertex_face.size(), 140'000u) << "all of them";
+    const auto expect_room = [&](const std::array<int, 4>& pair, std::size_t split, const Vec3& way) {
+      double least[2] = {1e9, 1e9};
+      for (std::size_t i = 0; i < 4; ++i) {
+        double& side = least[i < split ? 0 : 1];
+        side = std::min(side, bounds[std::size_t(pair[i])]);
+      }
+      ASSERT_LE(least[0] + least[1], way.norm() - thickness + 1e-9) << pair[0] << " " << pair[2];
+    };
+    const auto at = [&](const std::array<int, 4>& pair) {
+      return std::array<Vec3, 4>{pose.row(pair[0]), pose.row(pair[1]), pose.row(pair[2]), pose.row(pair[3])};
+    };
+    for (const auto& [v, f] : near.vertex_face) {
+      const std::array<int, 4> pair = {v, faces(f, 0), faces(f, 1), faces(f, 2)};
+      expect_room(pair, 1, nearest_of_vertex_face(at(pair)).way);
+    }
+    for (const std::array<int, 4>& pair : near.edge_edge)
+      expect_room(pair, 2, nearest_of_edges(at(pair)).way);
+  }
+}
+
 // An obstacle at rest takes no share of the room, and one that moves takes what it moves.
 TEST(VertexBounds, ObstaclesKeepTheirOwnMotion) {
   const FaceRows face{{0, 1, 2}};

@@ -38,6 +38,13 @@ IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick) {
   return answer.found.contacts.empty() ? IntervalVerdict::clear : IntervalVerdict::undecided;
 }
 
+InputError too_many_pairs(const MemoryShortage& shortage, const std::string& where) {
+  return InputError(
+      where + (where.empty() ? "" : ": ") + std::string(shortage.finding()) +
+      "; give a smaller --thickness, or leave neighbours out with --exclude-rings; --first alone "
+      "looks for no later pairs");
+}
+
 Crossings all_crossings(const IntervalAnswer& answer) {
   Crossings all = answer.start;
   for (const std::vector<CrossingPair>* more : {&answer.explained_pairs, &answer.ignored_pairs}) {
@@ -56,7 +63,10 @@ Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest&
                as_input_says(options, input)) {}
 
 void Answerer::tell_touching_from_close(const Motion& motion, IntervalAnswer& answer) const {
+  constexpr std::size_t kBytesOfTime = 80;  // a node of the map, and what malloc adds
+  MemoryWatch memory;
   for (const Contact& close : answer.found.contacts) {
+    memory.look(answer.touching.size(), kBytesOfTime);
     if (close.verdict != Verdict::contact) continue;
     answer.close_at_start += close.time == 0;
     const Answer touch = ask(elementary_, input_.mesh, motion, close.pair);
@@ -64,11 +74,16 @@ void Answerer::tell_touching_from_close(const Motion& motion, IntervalAnswer& an
   }
 }
 
-IntervalAnswer Answerer::answer_step(const Motion& motion, const Rig::Interval* bones) {
+IntervalAnswer Answerer::answer_step(const Motion& motion, const Rig::Interval* bones,
+                                     const std::string& where) {
   IntervalAnswer answer;
-  session_.step(motion, bones, answer);
   const bool is_thick = input_.thickness.length > 0;
-  if (is_thick) tell_touching_from_close(motion, answer);
+  try {
+    session_.step(motion, bones, answer);
+    if (is_thick) tell_touching_from_close(motion, answer);
+  } catch (const MemoryShortage& shortage) {
+    throw too_many_pairs(shortage, where);
+  }
   answer.verdict = verdict_of(answer, is_thick);
   return answer;
 }
@@ -77,7 +92,8 @@ IntervalAnswer Answerer::answer(std::size_t index) {
   const Stopwatch loading;
   const scenes::ClipInterval interval = input_.clip->load(index);
   const double load_ms = loading.milliseconds();
-  IntervalAnswer answer = answer_step(interval.motion, interval.bones ? &*interval.bones : nullptr);
+  IntervalAnswer answer = answer_step(interval.motion, interval.bones ? &*interval.bones : nullptr,
+                                      "interval " + std::to_string(index));
   answer.index = index;
   answer.load_ms = load_ms;
   return answer;
@@ -87,7 +103,8 @@ IntervalAnswer Answerer::pose(std::size_t frame) {
   const scenes::FrameView view = input_.clip->load_frame(frame);
   const Rig::Interval bones{view.bones, view.bones};
   IntervalAnswer answer =
-      answer_step(Motion(view.positions, view.positions), view.bones.empty() ? nullptr : &bones);
+      answer_step(Motion(view.positions, view.positions), view.bones.empty() ? nullptr : &bones,
+                  "frame " + std::to_string(frame));
   answer.index = frame;
   return answer;
 }

@@ -2,9 +2,12 @@
 
 #include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "bench/inputs/input.h"
+#include "core/base/error.h"
+#include "core/base/memory.h"
 #include "core/session/session.h"
 #include "core/session/true_motion.h"
 
@@ -42,6 +45,9 @@ struct IntervalAnswer : StepAnswer {
 // The verdict that goes by what the answer holds.
 IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick);
 
+// The error that a user gets who asked for more pairs than memory holds. `where` begins it and may be empty.
+InputError too_many_pairs(const MemoryShortage& shortage, const std::string& where);
+
 // Everything that crosses at the start, whether it is left out of the answer or not.
 Crossings all_crossings(const IntervalAnswer& answer);
 
@@ -74,7 +80,8 @@ class Answerer {
   int threads() const { return session_.threads(); }
 
  private:
-  IntervalAnswer answer_step(const Motion& motion, const Rig::Interval* bones);
+  // `where` names the step in errors.
+  IntervalAnswer answer_step(const Motion& motion, const Rig::Interval* bones, const std::string& where);
   void tell_touching_from_close(const Motion& motion, IntervalAnswer& answer) const;
 
   Input& input_;

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/base/error.h"
+#include "core/base/memory.h"
 #include "core/base/stage_clock.h"
 #include "core/base/thread_pool.h"
 #include "core/detect/exclusions.h"
@@ -78,6 +79,7 @@ class PairTester : public TrianglePairSink {
     first_ = first_only_ || any_contact_;
     if (start_ != nullptr) start_->pairs.clear(), start_->total = 0;
     out_ = &out;
+    memory_.start();
     counts_ = {};
     met_.start_interval();
     earliest_ = 1;
@@ -298,6 +300,13 @@ class PairTester : public TrianglePairSink {
   }
 
   void test_left() {
+    // A block of triangle pairs carries up to half a million feature pairs.
+    constexpr std::size_t kBytesOfTest =
+        2 * (sizeof(FeaturePair) + sizeof(MovingEdgeEdge) + sizeof(double) + sizeof(Answer));
+    if (left_.size() > most_left_) {
+      require_memory(out_->contacts.size(), kBytesOfTest * left_.size());
+      most_left_ = left_.size();
+    }
     vertex_faces_.clear(), edge_edges_.clear();
     constexpr std::size_t kAhead = 16;  // pairs that are looked up while one is fetched
     for (std::size_t i = 0; i < left_.size(); ++i) {
@@ -342,7 +351,10 @@ class PairTester : public TrianglePairSink {
   }
   void take_answer(const FeaturePair& pair, const Answer& answer) {
     ++counts_.elementary_tests;
-    if (answer.verdict != Verdict::apart) out_->contacts.push_back({pair, answer.verdict, answer.time});
+    if (answer.verdict != Verdict::apart) {
+      memory_.look(out_->contacts);
+      out_->contacts.push_back({pair, answer.verdict, answer.time});
+    }
     if (answer.verdict != Verdict::contact) return;
     earliest_ = std::min(earliest_, answer.time);
     found_any_ = true;
@@ -361,6 +373,7 @@ class PairTester : public TrianglePairSink {
   const Motion* motion_ = nullptr;
   Thickness thickness_;
   ContactSet* out_ = nullptr;
+  MemoryWatch memory_;
   Crossings* start_ = nullptr;
   std::size_t most_ = 0;      // crossings that are kept
   bool any_contact_ = false;  // one is enough
@@ -373,6 +386,7 @@ class PairTester : public TrianglePairSink {
   std::vector<CarriedPairs> carried_;  // by the block's triangle pairs; one pair may be carried repeatedly
   std::vector<std::vector<FeaturePair>> lists_;  // [ranges]: what the filter left of each
   std::vector<FeaturePair> left_;                // feature pairs that the filter could not prove apart
+  std::size_t most_left_ = 0;                    // of them so far, so many have been tested together
   FeaturePairSet met_;                           // feature pairs met in this interval
   std::optional<FeatureOwners> owners_;
   bool by_owners_ = false, owned_alone_ = false;

@@ -37,7 +37,7 @@ class Detector {
   // Replaces the content of `out` by the contacts and undecided feature pairs of one interval, unsorted, and
   // returns counters and times. A detector logs nothing. It throws InputError where it has no proof for the
   // thickness of the step, and where a package that it calls fails or refuses the positions
-  // (baselines/embree, baselines/fcl).
+  // (baselines/embree, baselines/fcl); and MemoryShortage before the contacts take more memory than there is.
   virtual Report detect(const Step& step, ContactSet& out) = 0;
   // Forgets all intervals: what follows is answered as by a new detector. Only the detectors of strategies
   // that follow the surface (StrategyKind::adaptive) have anything to forget.

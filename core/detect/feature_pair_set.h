@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/memory.h"
 #include "core/detect/contact.h"
 
 namespace cscd {
@@ -66,6 +67,7 @@ class FeaturePairSet {
     return slots_[i];
   }
   void grow() {
+    require_memory(size_, 2 * sizeof(std::uint64_t) * slots_.size());
     std::vector<std::uint64_t> old(2 * slots_.size());  // if it throws, the set is as it was
     --shift_;
     old.swap(slots_);

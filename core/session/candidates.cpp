@@ -85,6 +85,32 @@ void CandidateSet::take(const Motion& motion, const Thickness& thickness, std::s
   }
 }
 
+void CandidateSet::take_all_of(const Motion& motion, const Thickness& thickness, VertexId vertex,
+                               std::vector<FeaturePair>& out) {
+  const auto holds = [](const auto& vertices, VertexId v) {
+    return std::ranges::find(vertices, v) != vertices.end();
+  };
+  const auto try_face = [&](VertexId v, TriangleId t) {
+    if (!holds(mesh_.corners(t), v)) add(motion, thickness, FeaturePair::of(v, t), out);
+  };
+  for (std::size_t t = 0; t < mesh_.triangle_count(); ++t)
+    try_face(vertex, TriangleId{static_cast<std::int32_t>(t)});
+  for (const TriangleId t : mesh_.triangles_at(vertex)) {
+    for (std::size_t v = 0; v < mesh_.vertex_count(); ++v)
+      try_face(VertexId{static_cast<std::int32_t>(v)}, t);
+    for (const EdgeId own : mesh_.edges_of(t)) {
+      const Edge& ends = mesh_.ends(own);
+      if (!holds(ends, vertex)) continue;
+      for (std::size_t e = 0; e < mesh_.edge_count(); ++e) {
+        const EdgeId other{static_cast<std::int32_t>(e)};
+        const Edge& others = mesh_.ends(other);
+        if (!holds(ends, others[0]) && !holds(ends, others[1]))
+          add(motion, thickness, FeaturePair::of(own, other), out);
+      }
+    }
+  }
+}
+
 void CandidateSet::take_loose(const Motion& motion, const Thickness& thickness,
                               std::vector<FeaturePair>& out) {
   loose_.for_each_near(motion, thickness.largest(),
@@ -94,7 +120,9 @@ void CandidateSet::take_loose(const Motion& motion, const Thickness& thickness,
 void CandidateSet::add(const Motion& motion, const Thickness& thickness, const FeaturePair& features,
                        std::vector<FeaturePair>& out) {
   if (!within(mesh_, motion, features, thickness) || !met_.insert(features)) return;
-  if (exclusions_ == nullptr || !exclusions_->excludes(mesh_, features)) out.push_back(features);
+  if (exclusions_ != nullptr && exclusions_->excludes(mesh_, features)) return;
+  memory_.look(out);
+  out.push_back(features);
 }
 
 // A complete culler passes on every triangle pair of which features come within the thickness.
@@ -113,6 +141,11 @@ void CandidateSearch::find(const Motion& motion, const Thickness& thickness, std
   culler_->cull(sink);
   sink.flush();
   set_.take_loose(motion, thickness, out);
+}
+
+void CandidateSearch::find_more(const Motion& motion, const Thickness& thickness,
+                                std::span<const VertexId> vertices, std::vector<FeaturePair>& out) {
+  for (const VertexId v : vertices) set_.take_all_of(motion, thickness, v, out);
 }
 
 }  // namespace cscd

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/memory.h"
 #include "core/detect/culler.h"
 #include "core/detect/exclusions.h"
 #include "core/detect/feature_owners.h"
@@ -24,11 +25,15 @@ class CandidateSet {
                std::size_t own_vertices = 0);
 
   // Forgets the triangle pairs of the last step.
-  void start_step() { met_.start_interval(); }
+  void start_step() { met_.start_interval(), memory_.start(); }
   // Appends the feature pairs that are near enough, are not excluded, and are new in this step. All blocks of
   // a step together hold every triangle pair that carries some feature pair within its thickness.
   void take(const Motion& motion, const Thickness& thickness, std::span<const TrianglePair> block,
             std::vector<FeaturePair>& out);
+  // Appends those of which a feature holds a certain vertex, whichever triangle pairs carry them. Takes the
+  // time of a pass over the mesh for each of the features at the vertex.
+  void take_all_of(const Motion& motion, const Thickness& thickness, VertexId vertex,
+                   std::vector<FeaturePair>& out);
   // Appends those of loose vertices, which no triangle pair carries.
   void take_loose(const Motion& motion, const Thickness& thickness, std::vector<FeaturePair>& out);
 
@@ -42,6 +47,7 @@ class CandidateSet {
   std::optional<FeatureOwners> owners_;
   LooseVertices loose_;
   FeaturePairSet met_;
+  MemoryWatch memory_;
   std::vector<TrianglePair> block_;  // of which some feature pairs are wanted
 };
 
@@ -71,6 +77,11 @@ class CandidateSearch {
   // some t and is not excluded. Pairs that a complete culler proves apart are not among them, nor are pairs
   // that CandidateSet does not take. The culler is prepared by the first call.
   void find(const Motion& motion, const Thickness& thickness, std::vector<FeaturePair>& out);
+  // After find(): appends the pairs that hold some of these vertices and come within a thickness which is
+  // larger than that of find(). Where it is large for few vertices alone, this is far quicker than find(),
+  // because cullers go by the largest thickness of all pairs.
+  void find_more(const Motion& motion, const Thickness& thickness, std::span<const VertexId> vertices,
+                 std::vector<FeaturePair>& out);
 
  private:
   StrategyInput setup_;

@@ -49,7 +49,9 @@ void VertexBounds::add(const TriangleMesh& mesh, const Motion& motion, std::span
     }
     const bool may_come_close =
         !pair.apart || !(lowest(pair, true, caps_) + lowest(pair, false, caps_) > pair.least);
-    if (may_come_close) pairs_.push_back(pair);
+    if (!may_come_close) continue;
+    memory_.look(pairs_);
+    pairs_.push_back(pair);
   }
 }
 

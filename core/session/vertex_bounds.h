@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/memory.h"
 #include "core/detect/contact.h"
 #include "core/detect/thickness.h"
 #include "core/mesh/motion.h"
@@ -63,6 +64,7 @@ class VertexBounds {
   std::size_t movable_;
   std::vector<double> caps_;  // [movable]
   std::vector<Pair> pairs_;
+  MemoryWatch memory_;
 };
 
 }  // namespace cscd

@@ -56,8 +56,10 @@ namespace cscd {
 
 // Lengths have any unit. Times are shares of the step. All errors of the caller are thrown as
 // std::invalid_argument with one line that says what is wrong, where, and how to mend it; the object is then
-// as it was before. Where memory runs out in the middle of a step, std::bad_alloc passes through, and the
-// next steps are answered as by any other object.
+// as it was before. Where the pairs that are found would take more memory than there is, or than `ulimit -v`
+// and control groups allow, std::bad_alloc is thrown before memory runs out, and its what() says how many
+// pairs there are, how much memory they take, and what to change. It passes through where an allocation
+// fails, too. The next steps are then answered as by any other object.
 //
 // An object may be used by one thread at a time: a call that finds another thread at work throws
 // std::logic_error and changes nothing, as does a function given to true_motion() that asks the same object.

@@ -4,6 +4,7 @@ Distances are sampled over the step and searched between samples. What is nearer
 either. CSCD_RANDOM_INTERVALS sets how many intervals.
 """
 import os
+import resource
 import unittest
 
 import cscd
@@ -41,6 +42,28 @@ def distances(at, face):
 
 
 class Thickness(unittest.TestCase):
+    def test_memory(self):
+        """Where pairs take more memory than there is, an error comes first and says so."""
+        side = 20
+        i, j = np.meshgrid(np.arange(side + 1), np.arange(side + 1), indexing="ij")
+        sheet = np.stack([i, j, 0.01 * np.sin(21 * i + j)], -1).reshape(-1, 3)
+        a = (i[:-1, :-1] * (side + 1) + j[:-1, :-1]).ravel()
+        faces = np.concatenate([np.stack([a, a + side + 1, a + 1], 1), np.stack([a + 1, a + side + 1, a + side + 2], 1)])
+        body = cscd.SelfCollision(np.concatenate([faces, faces + len(sheet)]), np.concatenate([sheet, sheet + [0, 0, 0.4]]),
+                                  thickness=4.5)
+        pose = np.concatenate([sheet, sheet + [0, 0, 0.4]])
+        body.is_free(pose, pose)
+        before = resource.getrlimit(resource.RLIMIT_AS)
+        with open("/proc/self/statm") as file:
+            taken = int(file.read().split()[0]) * resource.getpagesize()
+        resource.setrlimit(resource.RLIMIT_AS, (taken + (32 << 20), before[1]))
+        try:
+            with self.assertRaisesRegex(MemoryError, "pairs of features are near enough so far, and going on takes"):
+                body.all_contacts(pose, pose)
+        finally:
+            resource.setrlimit(resource.RLIMIT_AS, before)
+        self.assertGreater(len(body.all_contacts(pose, pose).times), 300_000)
+
     def test_random_steps(self):
         seen = dict.fromkeys(["free", "close at start", "close later", "by vertex", "moved"], 0)
         for seed in range(INTERVALS):
