@@ -80,10 +80,8 @@ json thickness_json(const ClipAnswer& answer) {
   out["mean_edge"] = own.edge;
   out["left_out"] = nullptr;
   if (own.left_out)
-    out["left_out"] = {{"rings", own.asked.rings},
-                       {"near_rest", std::move(near)},
-                       {"close_at_rest", answer.close_at_rest},
-                       {"left_out_at_rest", answer.left_out_at_rest}};
+    out["left_out"] = {
+        {"rings", own.asked.rings}, {"near_rest", std::move(near)}, {"kept_at_rest", answer.kept_at_rest}};
   return out;
 }
 

@@ -9,7 +9,7 @@
 // Answers as JSON. Every field is described in query.schema.json.
 namespace cscd::bench {
 
-inline constexpr char kQuerySchema[] = "cscd.query/3";
+inline constexpr char kQuerySchema[] = "cscd.query/4";
 
 // Writes all of an answer, interval by interval, so that a document is not limited by memory.
 class ClipJson {

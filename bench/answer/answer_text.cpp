@@ -89,8 +89,8 @@ std::string length_text(const WrittenLength& written, double edge) {
   return written.text + (written.in_edges ? " (" + short_text(written.length(edge)) + ")" : "");
 }
 
-// "thickness 0.2e (0.0134); 1200 of 1234 pairs of features that are this close at rest are left out
-// (--exclude-rings 2)". Empty where nothing of this was asked.
+// "thickness 0.2e (0.0134); pairs of features that are near by construction are left out (--exclude-rings 2),
+// and 34 others are this close at rest". Empty where nothing of this was asked.
 std::string thickness_text(const ClipAnswer& answer) {
   const InputThickness& own = answer.input.thickness;
   const bool is_thick = own.length > 0;
@@ -99,14 +99,17 @@ std::string thickness_text(const ClipAnswer& answer) {
     out += "; " + many(s.close_at_start, "pair") + " of features " + (s.close_at_start == 1 ? "is" : "are") +
            " this close at the start of " + many(s.with_close_at_start, "interval");
   if (!own.left_out) return out;
-  out += (is_thick ? "; " : "") + std::to_string(answer.left_out_at_rest) + " of " +
-         many(answer.close_at_rest, "pair") + " of features that " + (is_thick ? "are this close" : "touch") +
-         " at rest are left out (";
+  out += std::string(is_thick ? "; " : "") + "pairs of features that are near by construction are left out (";
   if (own.asked.rings > 0) out += "--exclude-rings " + std::to_string(own.asked.rings);
   if (own.asked.near_rest.number > 0)
     out += (own.asked.rings > 0 ? ", --exclude-near-rest " : "--exclude-near-rest ") +
            length_text(own.asked.near_rest, own.edge);
-  return out + ")";
+  const bool is_one = answer.kept_at_rest == 1;
+  return out + "), and " + std::to_string(answer.kept_at_rest) + (is_one ? " other " : " others ") +
+         (!is_thick ? (is_one ? "touches" : "touch")
+          : is_one  ? "is this close"
+                    : "are this close") +
+         " at rest";
 }
 
 // "1.2 cm" where the input tells its unit, else "0.0123".

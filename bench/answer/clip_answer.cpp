@@ -141,14 +141,8 @@ ClipAnswer prepared_answer(const Input& input, const SurfaceNames& names, const 
                  answerer.preparation_ms(),
                  answerer.rest_crossings(),
                  answerer.rest_touching()};
-  if (const Exclusions* const left_out = input.thickness.left_out.get()) {
-    const ContactSet close = close_at_rest(input);
-    out.close_at_rest = close.contacts.size();
-    out.left_out_at_rest =
-        static_cast<std::size_t>(std::ranges::count_if(close.contacts, [&](const Contact& contact) {
-          return left_out->excludes(input.mesh, contact.pair);
-        }));
-  }
+  if (const Exclusions* const left_out = input.thickness.left_out.get())
+    out.kept_at_rest = close_at_rest(input, left_out).contacts.size();
   return out;
 }
 

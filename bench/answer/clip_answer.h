@@ -95,9 +95,9 @@ struct ClipAnswer {
   int threads = 1;
   double preparation_ms = 0;
   Crossings rest = {}, rest_touching = {};  // what crosses at rest, and what only touches there
-  // Pairs of features that are close at rest, and those of them that are left out by InputThickness; counted
-  // only where some may be.
-  std::size_t close_at_rest = 0, left_out_at_rest = 0;
+  // Pairs of features that are close at rest and not left out by InputThickness; counted only where some may
+  // be left out. Those are not decided.
+  std::size_t kept_at_rest = 0;
   AnswerSummary summary = {};
   std::vector<OverlapEvent> events = {};  // in the order in which they begin
   std::size_t not_measured = 0;           // starts of which events say nothing (OverlapEvents)

@@ -20,10 +20,10 @@ TEST(OwnOutput, IsNamedWithTheCommandThatTakesIt) {
                 .find("is a record of cscd run; cscd tables /"),
             std::string::npos);
   EXPECT_NE(
-      said("r.json", "\n {\n \"a\": 1,\n \"schema\" : \"cscd.query/3\"}").find("is an answer of cscd query"),
+      said("r.json", "\n {\n \"a\": 1,\n \"schema\" : \"cscd.query/4\"}").find("is an answer of cscd query"),
       std::string::npos);
   EXPECT_NE(
-      said("long.json", R"({"intervals": ")" + std::string(1 << 20, 'x') + R"(", "schema": "cscd.query/3"})")
+      said("long.json", R"({"intervals": ")" + std::string(1 << 20, 'x') + R"(", "schema": "cscd.query/4"})")
           .find("is an answer of cscd query"),
       std::string::npos)
       << "the schema stands behind all intervals";

@@ -82,9 +82,9 @@ void require_fit(const ThicknessRequest& request, const ElementaryTest& elementa
       names_of_rows(all_elementary_tests(), [](const auto& row) { return row.knows_distance(); }));
 }
 
-ContactSet close_at_rest(const Input& input) {
+ContactSet close_at_rest(const Input& input, const Exclusions* left_out) {
   StrategyInput setup = input.setup(elementary_test_named("filtered_exact"));
-  setup.exclusions = nullptr;
+  setup.exclusions = left_out;
   setup.rig = nullptr;
   const Prepared reference = complete_reference().make(setup);
   ContactSet found;

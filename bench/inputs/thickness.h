@@ -19,8 +19,8 @@ void require_fit(const ThicknessRequest& request, const ElementaryTest& elementa
 // Says what a strategy lacks for the request; empty where it lacks nothing.
 std::string why_not_within(const ThicknessRequest& request, const Strategy& strategy);
 
-// The feature pairs that are close in the pose at rest, whether left out or not, sorted; by the complete
-// reference and an exact test.
-ContactSet close_at_rest(const Input& input);
+// The feature pairs that are close in the pose at rest, sorted; by the complete reference and an exact test.
+// What is `left_out` is not decided; null for nothing.
+ContactSet close_at_rest(const Input& input, const Exclusions* left_out = nullptr);
 
 }  // namespace cscd::bench

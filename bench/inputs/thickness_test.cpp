@@ -56,6 +56,7 @@ TEST(Thickness, IsMeasuredInTheMeanEdgeOfThePoseAtRest) {
   ASSERT_NE(input.thickness.left_out, nullptr);
   for (const Contact& contact : close_at_rest(input).contacts)
     EXPECT_TRUE(input.thickness.left_out->excludes(input.mesh, contact.pair));
+  EXPECT_TRUE(close_at_rest(input, input.thickness.left_out.get()).contacts.empty());
   EXPECT_TRUE(has(
       test::refusal([&] { set_thickness(input, {.thickness = parse_length("--thickness", "1.5e308e")}); }),
       "--thickness 1.5e308e: is more than a number holds"));

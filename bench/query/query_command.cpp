@@ -331,7 +331,7 @@ void add_query(CLI::App& app) {
       "  cscd query character.h5 --strategy base --frames 0:10 --json answer.json\n"
       "  cscd query character.glb --clip all --fail-on-contact --json - | jq .clips[].summary\n\n"
       "Prints what a person wants to know. With --json FILE the whole answer goes there as JSON (schema\n"
-      "cscd.query/3); --json - is standard output, and the text then goes to standard error. A file of "
+      "cscd.query/4); --json - is standard output, and the text then goes to standard error. A file of "
       "several\n"
       "clips is answered as a list, `clips`, unless --clip names one; with --clip all any model file is.\n\n"
       "Each interval is clear, touches, or intersects_at_start; with --thickness, it may also be close: "

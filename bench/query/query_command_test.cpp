@@ -52,7 +52,7 @@ TEST_F(Query, AnswersAPersonWhoeverReads) {
 TEST_F(Query, GivesJsonWhereThatIsAskedAndTextBesideIt) {
   const Ran ran = run("cscd query small --json - | cat");
   EXPECT_EQ(ran.status, 0) << ran.errors;
-  EXPECT_EQ(json::parse(ran.out)["schema"], "cscd.query/3");
+  EXPECT_EQ(json::parse(ran.out)["schema"], "cscd.query/4");
   EXPECT_TRUE(has(ran.errors, "does not touch itself")) << ran.errors;
   const Ran both = run("cscd query small --json answer.json");
   EXPECT_TRUE(has(both.out, "does not touch itself")) << "a file beside it leaves the text where it is";

@@ -55,21 +55,19 @@ TEST_F(ThicknessOption, SaysHowManyPairsAreLeftOut) {
   const json document = answer("small --thickness 1e --exclude-rings 2");
   const json& left_out = document["thickness"]["left_out"];
   EXPECT_EQ(left_out["rings"], 2);
-  EXPECT_GT(left_out["left_out_at_rest"], 0);
-  EXPECT_LE(left_out["left_out_at_rest"], left_out["close_at_rest"]);
   EXPECT_EQ(document["strategy"], "drvbc_fast_complete");
   const Ran said = run("cscd query small --thickness 1e --exclude-near-rest 2e");
   EXPECT_EQ(said.status, 0) << said.errors;
   EXPECT_TRUE(says(said.out, "  thickness 1e (")) << said.out;
-  EXPECT_TRUE(
-      says(said.out, " of features that are this close at rest are left out (--exclude-near-rest 2e ("))
+  EXPECT_TRUE(says(
+      said.out, "; pairs of features that are near by construction are left out (--exclude-near-rest 2e ("))
       << said.out;
+  EXPECT_TRUE(says(said.out, " others are this close at rest\n")) << said.out;
   const Ran inspected = run("cscd inspect small --thickness 1e --json inspect.json");
   EXPECT_EQ(inspected.status, 0) << inspected.errors;
   const json close = json::parse(text("inspect.json"))["thickness"];
-  EXPECT_EQ(close["pairs"], left_out["close_at_rest"]);
-  EXPECT_EQ(close["pairs_beyond_rings"][1].get<std::size_t>(),
-            left_out["close_at_rest"].get<std::size_t>() - left_out["left_out_at_rest"].get<std::size_t>());
+  EXPECT_EQ(close["pairs_beyond_rings"][1], left_out["kept_at_rest"]);
+  EXPECT_GT(close["pairs"], left_out["kept_at_rest"]);
 }
 
 TEST_F(ThicknessOption, IsVerifiedAndTimedByRun) {

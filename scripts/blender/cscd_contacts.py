@@ -146,7 +146,7 @@ def main():
         if not path.exists():
             refuse(f"{path}: no such file; check the name")
     answer = json.loads(chosen.answer.read_text())
-    if answer.get("schema") != "cscd.query/3" or "intervals" not in answer:
+    if answer.get("schema") != "cscd.query/4" or "intervals" not in answer:
         refuse(f"{chosen.answer}: is no answer about one clip; write it with cscd query INPUT --clip NAME --json FILE")
     first = round(answer["import"]["clips"][0]["first_frame"])
     for interval in answer["intervals"]:
