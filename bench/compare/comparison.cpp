@@ -81,6 +81,31 @@ void compare_all_times(const Side& before, const Side& after, Comparison& out) {
   out.means = mean_over_scenes(out.times, count);
 }
 
+// Gives the scenes of the new side the names of those of the old side that were asked the same: a thickness
+// may be written in edges or in units.
+void name_alike(const Side& before, Side& after) {
+  for (const auto& [name, records] : before.scenes) {
+    if (after.scenes.contains(name)) continue;
+    const auto same = std::ranges::find_if(after.scenes, [&, &records = records](const auto& scene) {
+      return !before.scenes.contains(scene.first) && asks_the_same(records.front(), scene.second.front());
+    });
+    if (same == after.scenes.end()) continue;
+    auto node = after.scenes.extract(same);
+    node.key() = name;
+    after.scenes.insert(std::move(node));
+  }
+}
+
+// Where both sides have a scene, but with other settings: how these differ, for the first such scene.
+std::string why_not_in_common(const Side& before, const Side& after) {
+  for (const auto& [name, records] : before.scenes)
+    for (const auto& [other_name, others] : after.scenes)
+      if (bare_name(records.front()) == bare_name(others.front()))
+        return "; they have " + bare_name(records.front()) +
+               " with other settings: " + other_settings(records.front(), others.front());
+  return "";
+}
+
 using nlohmann::ordered_json;
 
 ordered_json interval_json(const Estimate& ratio) {
@@ -99,7 +124,8 @@ ComparisonVerdict Comparison::verdict() const {
   return refusals.empty() ? ComparisonVerdict::nothing_worse : ComparisonVerdict::not_comparable;
 }
 
-Comparison compare(const Side& before, const Side& after, Lane lane) {
+Comparison compare(const Side& before, Side after, Lane lane) {
+  name_alike(before, after);
   Comparison out;
   out.lane = lane;
   out.old_commit = before.commit, out.new_commit = after.commit;
@@ -112,7 +138,8 @@ Comparison compare(const Side& before, const Side& after, Lane lane) {
   for (const auto& [scene, records] : after.scenes)
     if (!before.scenes.contains(scene)) compare_with_none(scene, {}, records, out);
   if (out.scenes.empty())
-    out.refusals.push_back({"", "everything", "OLD and NEW have no scene in common"});
+    out.refusals.push_back(
+        {"", "everything", "OLD and NEW have no scene in common" + why_not_in_common(before, after)});
   else if (out.compared_answers + out.compared_counts == 0 && lane == Lane::counters)
     out.refusals.push_back({"", "everything", "the records share no answer and no counter"});
   if (lane == Lane::all) compare_all_times(before, after, out);

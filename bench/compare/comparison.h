@@ -49,7 +49,7 @@ struct Comparison {
   ComparisonVerdict verdict() const;
 };
 
-Comparison compare(const Side& before, const Side& after, Lane lane);
+Comparison compare(const Side& before, Side after, Lane lane);
 
 // 0 nothing worse, 1 worse or less true, 2 not comparable.
 int exit_status(ComparisonVerdict verdict);

@@ -60,7 +60,9 @@ void add_history(CLI::App& app) {
   command->add_option("--machine", options->choice.machine, "of this kind of machine alone: a folder's name");
   command->add_option("--scene", options->choice.scene, "of this scene alone");
   command->add_option("--row", options->choice.row, "of this row alone");
-  command->add_option("--stage", options->choice.stage, "of this stage")->capture_default_str();
+  command->add_option("--stage", options->choice.stage, "of this stage")
+      ->type_name("TEXT:{total,refit,rv_update,traversal,elementary,embedding,start,preparation}")
+      ->capture_default_str();
   command->add_flag("--all", options->all, "show courses of a single commit too");
   command->add_option("--keep", options->records,
                       "add an entry of these records: files or folders, commas between. Git is asked for the "

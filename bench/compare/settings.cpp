@@ -1,6 +1,7 @@
 #include "bench/compare/settings.h"
 
 #include <algorithm>
+#include <charconv>
 #include <set>
 #include <string_view>
 
@@ -26,6 +27,20 @@ bool is_option(const std::string& word) {
   return word.size() > 2 && word.starts_with("--");
 }
 
+// A value in one way of writing it: numbers, those of edges included, in as few digits as tell them apart,
+// and two names with a colon between them in order.
+std::string plainly(const std::string& value) {
+  double number = 0;
+  const char* const end = value.data() + value.size();
+  const auto [rest, error] = std::from_chars(value.data(), end, number);
+  if (error == std::errc{} && (rest == end || std::string_view(rest, end) == "e"))
+    return exact_text(number) + std::string(rest, end);
+  const std::size_t colon = value.find(':');
+  if (colon == std::string::npos || value.find(':', colon + 1) != std::string::npos) return value;
+  const std::string first = value.substr(0, colon), second = value.substr(colon + 1);
+  return std::min(first, second) + ":" + std::max(first, second);
+}
+
 // The options of a command line that are settings. An option that is given several times, as --ignore, has
 // all its values in order, so that the order in which they were given makes no difference.
 Settings from_command(const std::vector<std::string>& words) {
@@ -36,9 +51,9 @@ Settings from_command(const std::vector<std::string>& words) {
     const std::string option = words[i].substr(0, equals);
     if (std::ranges::find(kNoSettings, option) != std::end(kNoSettings)) continue;
     const bool has_value = equals != std::string::npos || (i + 1 < words.size() && !is_option(words[i + 1]));
-    given[option].insert(!has_value                    ? "given"
-                         : equals != std::string::npos ? words[i].substr(equals + 1)
-                                                       : words[i + 1]);
+    given[option].insert(
+        !has_value ? "given"
+                   : plainly(equals != std::string::npos ? words[i].substr(equals + 1) : words[i + 1]));
   }
   Settings out;
   for (const auto& [option, values] : given)
@@ -75,6 +90,16 @@ std::string other_settings(const Record& one, const Record& other) {
       out += (out.empty() ? "" : "; ") + name + " is " + value_in(first, name) + " and " +
              value_in(second, name);
   return out;
+}
+
+std::string bare_name(const Record& record) {
+  const std::string& name = record.scene.name;
+  return record.thickness > 0 ? name.substr(0, name.rfind(", thickness ")) : name;
+}
+
+bool asks_the_same(const Record& one, const Record& other) {
+  return bare_name(one) == bare_name(other) && one.thickness == other.thickness &&
+         one.pipeline == other.pipeline;
 }
 
 std::string other_row_settings(const StrategyRecord& one, const StrategyRecord& other) {

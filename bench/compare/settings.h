@@ -19,6 +19,12 @@ Settings settings_of(const Record& record);
 // they are equal. Answers and counters are compared between equal settings only.
 std::string other_settings(const Record& one, const Record& other);
 
+// The name of a record's scene without the thickness that it may end with, whichever way that is written.
+std::string bare_name(const Record& record);
+// Whether two records are of one scene and of equal thickness and pipeline, by which records of a scene are
+// told apart.
+bool asks_the_same(const Record& one, const Record& other);
+
 // Says in which settings that belong to a row it differs between two records: how many intervals were played
 // to it before each measured one. Empty where they are equal.
 std::string other_row_settings(const StrategyRecord& one, const StrategyRecord& other);
