@@ -43,6 +43,7 @@ std::string no_claims_text(const Record& record) {
 }
 
 std::string run_times_text(const Record& record) {
+  const std::string few = too_few_text(record);  // then no row is called faster than another
   std::size_t width = 0;
   std::string rows;
   for (const StrategyRecord& strategy : record.strategies) width = std::max(width, strategy.name.size());
@@ -52,10 +53,9 @@ std::string run_times_text(const Record& record) {
     char text[128];
     std::snprintf(text, sizeof text, "  %-*s %10s ms%s", static_cast<int>(width), strategy.name.c_str(),
                   figure_text(*total.value).c_str(), total.marked ? "*" : "");
-    rows += text + beside_reference(strategy.name, record) + "\n";
+    rows += text + (few.empty() ? beside_reference(strategy.name, record) : "") + "\n";
   }
   if (rows.empty()) return "";
-  const std::string few = too_few_text(record);
   return few + (few.empty() ? "" : "\n") + "median total of an interval, with refit:\n" + rows +
          shortfall_note({&record, 1});
 }

@@ -104,7 +104,7 @@ const measurementOf = ({ scene, machine, measured }) =>
   `${scene} on ${machine}: ${measured.timed_intervals.length} intervals, ${measured.rows.length} rows in turns`;
 
 // What a row took at a commit, with the mark that says whether it answered everything.
-const marked = ({ median, mark }) => short(median) + mark;
+const marked = ({ median, mark }) => number(median) + mark;
 
 export function showHistory(history) {
   const places = distinct(history.courses.map(measurementOf)), select = byId("history-scene");
