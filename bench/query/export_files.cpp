@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <vector>
@@ -38,10 +39,10 @@ double file_number(const Input& input, std::size_t frame) {
   return (std::abs(number - whole) < 1e-3 ? whole : number) - before;
 }
 
-// The number in the name of the first file of a sequence.
-std::size_t first_in_names(const Input& input) {
+// The number in the name of the first file of a sequence, below 0 where that of the frame is.
+std::int64_t first_in_names(const Input& input) {
   const double first = file_number(input, 0);
-  if (first >= 0 && first == std::floor(first)) return static_cast<std::size_t>(first);
+  if (first == std::floor(first)) return static_cast<std::int64_t>(first);
   note_renumbered(input);
   return 0;
 }
@@ -55,14 +56,17 @@ class Files {
     targets_.push_back(file_target(path, force_));
     return paths_.size() - 1;
   }
-  // Adds a file for each frame: NAME.0012.obj for frame 12 of NAME.obj. The number has as many digits as the
-  // last frame needs, at least four.
-  void add_sequence(const fs::path& output, std::size_t first, std::size_t frames,
+  // Adds a file for each frame: NAME.0012.obj for frame 12 of NAME.obj, and NAME.-0012.obj for frame -12.
+  // Numbers have as many digits as the longest needs, at least four.
+  void add_sequence(const fs::path& output, std::int64_t first, std::size_t frames,
                     const std::string& extension) {
-    const std::size_t digits = std::max<std::size_t>(4, std::to_string(first + frames - 1).size());
-    for (std::size_t f = first; f < first + frames; ++f) {
-      std::string number = std::to_string(f);
+    const std::int64_t end = first + static_cast<std::int64_t>(frames);
+    const std::size_t digits =
+        std::max({std::size_t{4}, std::to_string(end - 1).size(), std::to_string(std::abs(first)).size()});
+    for (std::int64_t f = first; f < end; ++f) {
+      std::string number = std::to_string(std::abs(f));
       number.insert(0, digits - number.size(), '0');
+      if (f < 0) number.insert(0, 1, '-');
       add(output.parent_path() / (output.stem().string() + "." + number + extension));
     }
   }
@@ -238,7 +242,7 @@ class Marker {
 void export_events(Input& input, const fs::path& output, bool force) {
   const std::size_t frames = input.clip->frame_count();
   Files files(force);
-  const std::size_t first = first_in_names(input);
+  const std::int64_t first = first_in_names(input);
   files.add_sequence(output, first, frames, ".ply");
   const fs::path curves = output.parent_path() / (output.stem().string() + ".curves.obj");
   files.add_sequence(curves, first, frames, ".obj");
@@ -271,7 +275,8 @@ void export_events(Input& input, const fs::path& output, bool force) {
 void export_paraview(Input& input, const fs::path& output, bool force) {
   const std::size_t frames = input.clip->frame_count();
   Files files(force);
-  const std::size_t list = files.add(output), first = first_in_names(input);
+  const std::size_t list = files.add(output);
+  const std::int64_t first = first_in_names(input);
   files.add_sequence(output, first, frames, ".vtp");
   const fs::path contacts = output.parent_path() / (output.stem().string() + ".contacts.pvd");
   files.add_sequence(contacts, first, frames, ".vtp");

@@ -119,6 +119,24 @@ TEST_F(ExportFiles, FramesKeepTheNumbersOfTheirClip) {
   EXPECT_TRUE(fs::exists(folder / "g.0000.obj"));
 }
 
+// Mutation: frames before frame 0 are counted from 0.
+TEST_F(ExportFiles, FramesBeforeZeroKeepTheirNumbers) {
+  for (const char* name : {"c.-2.obj", "c.-1.obj", "c.0.obj"})
+    put(name, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 " + std::string(name[2] == '-' ? "1" : "2") +
+                  "\nv 1 0 1\nv 0 1 1\nf 1 2 3\nf 4 5 6\n");
+  for (const char* output : {"f.obj", "f.ply", "f.pvd"}) {
+    const Ran ran = run(std::string("cscd export c.0.obj ") + output);
+    ASSERT_EQ(ran.status, 0) << output << ran.errors;
+    EXPECT_EQ(ran.out.find("count from 0"), std::string::npos) << output << ran.out;
+  }
+  for (const char* file : {"f.-0002.obj", "f.-0001.ply", "f.0000.ply", "f.-0002.vtp"})
+    EXPECT_TRUE(fs::exists(folder / file)) << file;
+  const Ran read = run("cscd query f.0000.obj --frames -2:-1");
+  EXPECT_EQ(read.status, 0) << read.errors;
+  EXPECT_NE(read.out.find("3 frames, from frame -2 to 0"), std::string::npos) << read.out;
+  EXPECT_EQ(answer("f.-0001.ply")["intervals"][0]["frame"], -2);
+}
+
 TEST_F(ExportFiles, NothingIsWrittenWhereOneFileStandsInTheWay) {
   put("walk.0003.obj", "mine");
   expect_refused(run("cscd export small walk.obj"), "walk.0003.obj");
