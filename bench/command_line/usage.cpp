@@ -84,6 +84,15 @@ std::string input_option(const CLI::App& command) {
   return has_scene ? "--scene" : "";
 }
 
+// The options that a command cannot do without and that were not given, as they are to be written.
+std::string missing_options(const CLI::App& command) {
+  std::string out;
+  for (const CLI::Option* option : command.get_options())
+    if (option->get_required() && option->count() == 0)
+      out += " " + option->get_name() + " " + option->get_type_name();
+  return out;
+}
+
 std::string unexpected(const Named& named, const std::vector<std::string>& words) {
   const CLI::App& command = *named.command;
   std::vector<std::string> below;
@@ -95,7 +104,7 @@ std::string unexpected(const Named& named, const std::vector<std::string>& words
     if (word.size() > 1 && word[0] == '-') return unknown_option(command, word);
   if (const std::string option = input_option(command); !option.empty())
     return words.front() + ": this command takes its input by an option; write " + named.words + " " +
-           option + " " + words.front();
+           option + " " + words.front() + missing_options(command);
   return "one argument too many: " + words.front();
 }
 
@@ -151,7 +160,8 @@ std::string fault_of(const std::string& text, Kind kind) {
 
 std::string HelpFormat::make_footer(const CLI::App* command) const {
   std::string said = command->get_description();
-  for (const CLI::Option* option : command->get_options()) said += "\n" + option->get_description();
+  for (const CLI::Option* option : command->get_options())
+    said += "\n" + option->get_type_name() + " " + option->get_description();
   for (const CLI::App* below : command->get_subcommands([](const CLI::App*) { return true; })) {
     const std::string text =
         below->get_description();  // of which the list of commands has the first paragraph

@@ -204,7 +204,6 @@ bool work(const RunOptions& options) {
 
 void run(const RunOptions& options) {
   const bool is_worker = !options.worker.empty();
-  if (options.output.empty() && !is_worker) throw CLI::RequiredError("--json");
   require_sound(options.request);  // before anything is opened
   require_fit(options.thickness, elementary_test_named(options.request.elementary));
   if (!options.cells.empty()) make_folder(options.cells, "--cells");
@@ -256,6 +255,7 @@ void add_replay_options(CLI::App& command, ReplayRequest& request) {
           "--pipeline", request.pipeline,
           "`published` measures the paper's rows with the paper's code: scalar refit and orientation, "
           "its\nfilter alone, one feature pair after the other; `today` with this project's")
+      ->type_name("TEXT:{today,published}")
       ->capture_default_str();
   command.add_option("--repetitions", request.repetitions, "how often each interval is timed")
       ->check(CLI::Range(1, 1000))
@@ -311,9 +311,14 @@ void add_run(CLI::App& app) {
   add_replay_options(*command, options->request);
   add_ignore_options(*command, options->ignored);
   add_thickness_options(*command, options->thickness);
-  command->add_option(
-      "--json", options->output,
-      "where the record goes, - is standard output; with --scene all or a folder, the folder of the records");
+  CLI::Option* json =
+      command
+          ->add_option(
+              "--json", options->output,
+              "where the record goes, - is standard output; with --scene all or a folder, the folder "
+              "of the records")
+          ->type_name("FILE")
+          ->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->add_flag("--counts", options->counts,
                     "verdicts, counters and digests alone, which every machine repeats to the bit; no times");
@@ -333,7 +338,8 @@ void add_run(CLI::App& app) {
                    "I/N: measure every N-th cell from the I-th on, and write no record; the same command\n"
                    "without --worker measures what is missing and writes it")
       ->needs(cells)
-      ->excludes("--json")
+      ->excludes(json)
+      ->each([json](const std::string&) { json->required(false); })
       ->group("A long run");
   command->callback([options] { run(*options); });
 }

@@ -198,9 +198,9 @@ bool takes(const ScaleOptions& options, std::string_view study, const std::strin
   return std::ranges::find(options.studies, study) != options.studies.end();
 }
 
-std::string study_names() {
+std::string study_names(const std::string& between = ", ") {
   std::string names;
-  for (const auto& study : kStudies) names += (names.empty() ? "" : ", ") + std::string(study.name);
+  for (const auto& study : kStudies) names += (names.empty() ? "" : between) + std::string(study.name);
   return names;
 }
 
@@ -347,7 +347,8 @@ void add_scale(CLI::App& app) {
       "Every answer is held against the complete reference before anything is timed; on meshes above\n"
       "--reference-up-to on one interval a step, and the others against each other. Exit status 1 where an\n"
       "answer is wrong. \"STRATEGY --first\" looks for the earliest contact alone.");
-  command->add_option("--study", options->studies, study_names() + ", with commas; default all but the last")
+  command->add_option("--study", options->studies, "with commas; default all but the last")
+      ->type_name("TEXT:{" + study_names(",") + "}")
       ->delimiter(',');
   command
       ->add_option("--scene", options->scenes,

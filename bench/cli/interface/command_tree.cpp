@@ -33,12 +33,14 @@ Values values_of(const CLI::Option& option, const std::vector<std::string>& name
                                     Named{"--elementary", "tests", false}, Named{"what", "all", false}};
   Values values;
   values.words = choice_of(option);
+  values.are_joined = option.get_delimiter() != '\0';
   if (!values.words.empty()) return values;
   const auto* const named = std::ranges::find_if(
       kSections, [&](const Named& row) { return std::ranges::find(names, row.option) != names.end(); });
   if (named != kSections.end()) values.section = named->section;
   const std::string type = option.get_type_name();
-  values.files = named != kSections.end() ? named->or_files : type.starts_with("TEXT");
+  values.files =
+      named != kSections.end() ? named->or_files : type.starts_with("TEXT") || type.starts_with("FILE");
   values.are_joined = named != kSections.end() && names.front().starts_with("--");
   return values;
 }

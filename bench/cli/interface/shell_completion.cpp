@@ -44,7 +44,9 @@ std::string zsh_text(const std::string& text) {
 
 // A blank before an action keeps zsh from adding arguments of its own to it.
 std::string zsh_action(const Values& values) {
-  if (!values.words.empty()) return "(" + joined(values.words, " ") + ")";
+  if (!values.words.empty())
+    return values.are_joined ? " _sequence compadd - " + joined(values.words, " ")
+                             : "(" + joined(values.words, " ") + ")";
   if (values.section.empty()) return values.files ? "_files" : " ";
   return std::string(values.are_joined ? " _cscd_joined" : " _cscd_names") +
          (values.files ? "_or_files " : " ") + values.section;
@@ -64,6 +66,9 @@ std::string bash_completion(const std::vector<CommandWords>& tree) {
   std::string out = head_of("bash", "# ");
   out += R"sh(_cscd() {
   local current=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command='' i
+  # bash takes --option=value for three words.
+  if [[ $before == = ]]; then before=${COMP_WORDS[COMP_CWORD - 2]}; fi
+  if [[ $current == = ]]; then current=''; fi
   COMPREPLY=()
   # offer WORDS [files]: what the current word may become.
   offer() {
@@ -134,7 +139,9 @@ _cscd_joined_or_files() { _alternative "names:name: _cscd_joined $1" "files:file
     out += std::string("  _arguments") + (command.commands.empty() ? "" : " -C");
     for (const OptionWords& option : command.options)
       for (const std::string& name : option.names) {
-        std::string text = (option.may_repeat ? "*" : "") + name + "[" + zsh_text(option.meaning) + "]";
+        const bool takes_equals = option.takes_value && name.starts_with("--");  // --option=value, too
+        std::string text = (option.may_repeat ? "*" : "") + name + (takes_equals ? "=" : "") + "[" +
+                           zsh_text(option.meaning) + "]";
         if (option.takes_value) text += zsh_argument(option, name);
         out += " \\\n    " + in_single_quotes(text);
       }
