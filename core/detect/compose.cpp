@@ -303,9 +303,10 @@ class PairTester : public TrianglePairSink {
     // A block of triangle pairs carries up to half a million feature pairs.
     constexpr std::size_t kBytesOfTest =
         2 * (sizeof(FeaturePair) + sizeof(MovingEdgeEdge) + sizeof(double) + sizeof(Answer));
-    if (left_.size() > most_left_) {
-      require_memory(out_->contacts.size(), kBytesOfTest * left_.size());
-      most_left_ = left_.size();
+    if (left_.size() > room_of_tests_) {
+      const std::size_t room = left_.size() + left_.size() / 8;
+      require_memory(out_->contacts.size(), kBytesOfTest * room);
+      room_of_tests_ = room;
     }
     vertex_faces_.clear(), edge_edges_.clear();
     constexpr std::size_t kAhead = 16;  // pairs that are looked up while one is fetched
@@ -386,7 +387,7 @@ class PairTester : public TrianglePairSink {
   std::vector<CarriedPairs> carried_;  // by the block's triangle pairs; one pair may be carried repeatedly
   std::vector<std::vector<FeaturePair>> lists_;  // [ranges]: what the filter left of each
   std::vector<FeaturePair> left_;                // feature pairs that the filter could not prove apart
-  std::size_t most_left_ = 0;                    // of them so far, so many have been tested together
+  std::size_t room_of_tests_ = 0;                // for so many of them there is memory
   FeaturePairSet met_;                           // feature pairs met in this interval
   std::optional<FeatureOwners> owners_;
   bool by_owners_ = false, owned_alone_ = false;
