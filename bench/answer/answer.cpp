@@ -39,10 +39,9 @@ IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick) {
 }
 
 InputError too_many_pairs(const MemoryShortage& shortage, const std::string& where) {
-  return InputError(
-      where + (where.empty() ? "" : ": ") + std::string(shortage.finding()) +
-      "; give a smaller --thickness, or leave neighbours out with --exclude-rings; --first alone "
-      "looks for no later pairs");
+  return InputError(where + (where.empty() ? "" : ": ") + std::string(shortage.finding()) +
+                    "; give a smaller --thickness, leave neighbours out with --exclude-rings, ask for the "
+                    "earliest alone with --first, or allow a model file a larger --memory");
 }
 
 Crossings all_crossings(const IntervalAnswer& answer) {

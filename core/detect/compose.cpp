@@ -300,9 +300,10 @@ class PairTester : public TrianglePairSink {
   }
 
   void test_left() {
-    // A block of triangle pairs carries up to half a million feature pairs.
+    // A block of triangle pairs carries up to half a million feature pairs, and lists double: the old one and
+    // the new one are there at a time.
     constexpr std::size_t kBytesOfTest =
-        2 * (sizeof(FeaturePair) + sizeof(MovingEdgeEdge) + sizeof(double) + sizeof(Answer));
+        3 * (sizeof(FeaturePair) + sizeof(MovingEdgeEdge) + sizeof(double) + sizeof(Answer));
     if (left_.size() > room_of_tests_) {
       const std::size_t room = left_.size() + left_.size() / 8;
       require_memory(out_->contacts.size(), kBytesOfTest * room);
