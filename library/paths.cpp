@@ -79,8 +79,11 @@ SelfCollision::PathsAnswer answer_paths(const SelfCollision::Paths& paths, doubl
   TrueMotionOptions options = true_motion_options(mean_edge(setup.mesh, setup.reference));
   if (resolution > 0) options.resolution = resolution;
   TrueMotion motion(callers, setup, kDrvbcFastComplete, options);
-  if (motion.crossing_at(from))
-    return {SelfCollision::PathsAnswer::Verdict::intersects_at_start, from, from, 0, {-1, -1}};
+  if (const auto met = motion.meeting_at(from))
+    return written({.verdict = met->crosses ? TrueVerdict::intersects_at_start : TrueVerdict::touches,
+                    .from = from,
+                    .to = from,
+                    .pair = met->pair});
   return written(motion.answer(from, to));
 }
 

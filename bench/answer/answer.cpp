@@ -33,6 +33,7 @@ std::string_view to_string(IntervalVerdict verdict) {
 
 IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick) {
   if (answer.start.total > 0) return IntervalVerdict::intersects_at_start;
+  if (answer.start_touching.total > 0) return IntervalVerdict::touches;
   if (is_thick ? !answer.touching.empty() : answer.time().has_value()) return IntervalVerdict::touches;
   if (answer.time()) return IntervalVerdict::close;
   return answer.found.contacts.empty() ? IntervalVerdict::clear : IntervalVerdict::undecided;
@@ -44,9 +45,10 @@ InputError too_many_pairs(const MemoryShortage& shortage, const std::string& whe
                     "earliest alone with --first, or allow a model file a larger --memory");
 }
 
-Crossings all_crossings(const IntervalAnswer& answer) {
+Crossings all_meetings(const IntervalAnswer& answer) {
   Crossings all = answer.start;
-  for (const std::vector<CrossingPair>* more : {&answer.explained_pairs, &answer.ignored_pairs}) {
+  for (const std::vector<CrossingPair>* more :
+       {&answer.start_touching.pairs, &answer.explained_pairs, &answer.ignored_pairs}) {
     all.pairs.insert(all.pairs.end(), more->begin(), more->end());
     all.total += more->size();
   }
@@ -60,6 +62,16 @@ Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest&
       elementary_(elementary),
       session_(input.name, input.setup(elementary), strategy, complete_fallback(), input.rest(),
                as_input_says(options, input)) {}
+
+// A start of which not all pairs are kept crosses.
+void Answerer::tell_touching_from_crossing(const Motion& motion, IntervalAnswer& answer) const {
+  if (answer.start.total == 0 || !answer.start.all_kept()) return;
+  const Stopwatch watch;
+  Meetings meetings = tell_meetings_apart(input_.mesh, motion.start(), answer.start);
+  answer.start = std::move(meetings.crossing);
+  answer.start_touching = std::move(meetings.touching);
+  answer.embedding_ms += watch.milliseconds();
+}
 
 void Answerer::tell_touching_from_close(const Motion& motion, IntervalAnswer& answer) const {
   constexpr std::size_t kBytesOfTime = 80;  // a node of the map, and what malloc adds
@@ -79,6 +91,7 @@ IntervalAnswer Answerer::answer_step(const Motion& motion, const Rig::Interval* 
   const bool is_thick = input_.thickness.length > 0;
   try {
     session_.step(motion, bones, answer);
+    tell_touching_from_crossing(motion, answer);
     if (is_thick) tell_touching_from_close(motion, answer);
   } catch (const MemoryShortage& shortage) {
     throw too_many_pairs(shortage, where);

@@ -15,7 +15,7 @@ namespace cscd::bench {
 
 enum class IntervalVerdict {
   clear,                // nothing crosses at the start, and nothing touches
-  touches,              // nothing crosses at the start, and something touches
+  touches,              // nothing crosses at the start, and something touches, at the start or later
   intersects_at_start,  // triangles cross at the start
   undecided,  // nothing crosses, and an inexact elementary test could not tell whether something touches
   close       // nothing crosses or touches, and something comes within the thickness
@@ -25,6 +25,9 @@ std::string_view to_string(IntervalVerdict verdict);
 // The answer to one interval of a clip.
 struct IntervalAnswer : StepAnswer {
   std::size_t index = 0;
+  // Pairs of triangles that meet at the start and only touch there (Meetings); `start` holds those that
+  // cross.
+  Crossings start_touching;
   IntervalVerdict verdict = IntervalVerdict::clear;
   double load_ms = 0;  // what it took to read both frames, outside of `wall_ms`
   // With a thickness, contacts are close pairs. `touching` holds the earliest times at which those of them
@@ -48,8 +51,9 @@ IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick);
 // The error that a user gets who asked for more pairs than memory holds. `where` begins it and may be empty.
 InputError too_many_pairs(const MemoryShortage& shortage, const std::string& where);
 
-// Everything that crosses at the start, whether it is left out of the answer or not.
-Crossings all_crossings(const IntervalAnswer& answer);
+// All pairs that meet at the start, whether they cross or touch, and whether they are left out of the answer
+// or not.
+Crossings all_meetings(const IntervalAnswer& answer);
 
 using AnswerOptions = SessionOptions;
 
@@ -82,6 +86,7 @@ class Answerer {
  private:
   // `where` names the step in errors.
   IntervalAnswer answer_step(const Motion& motion, const Rig::Interval* bones, const std::string& where);
+  void tell_touching_from_crossing(const Motion& motion, IntervalAnswer& answer) const;
   void tell_touching_from_close(const Motion& motion, IntervalAnswer& answer) const;
 
   Input& input_;

@@ -145,6 +145,7 @@ json event_json(const Input& input, const OverlapEvent& event) {
           {"other_is_open", event.other_is_open},
           {"pairs", event.pairs},
           {"curves", event.curves},
+          {"crosses", event.crosses},
           {"contacts", event.contacts},
           {"depth_at", event.depth_at}};
 }
@@ -168,6 +169,7 @@ json interval_json(const Input& input, const IntervalAnswer& answer, std::size_t
               {"starts_embedded", answer.starts_embedded},
               {"start_pairs", pairs_json(answer.start.pairs, most_start_pairs)},
               {"start_pairs_total", answer.start.total},
+              {"start_touching", answer.start_touching.total},
               {"left_out", {{"start_pairs", answer.rest_pairs}, {"contacts", answer.rest_contacts}}},
               {"ignored",
                {{"start_pairs", answer.ignored_pairs.size()}, {"contacts", answer.ignored.contacts.size()}}},
@@ -218,6 +220,7 @@ json last_pose_json(const ClipAnswer& answer, std::size_t most_start_pairs) {
           {"seconds", moment["seconds"]},
           {"pairs", pairs_json(pose.start.pairs, most_start_pairs)},
           {"pairs_total", pose.start.total},
+          {"touching", pose.start_touching.total},
           {"left_out", pose.rest_pairs},
           {"ignored", pose.ignored_pairs.size()}};
 }

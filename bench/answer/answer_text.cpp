@@ -170,6 +170,12 @@ std::string frames_text(const ClipAnswer& answer) {
          frame_text(frame_of(answer.input, {s.last_index, 1}));
 }
 
+const char* verb_of(IntervalVerdict how) {
+  return how == IntervalVerdict::intersects_at_start ? "crosses"
+         : how == IntervalVerdict::close             ? "comes close to"
+                                                     : "touches";
+}
+
 // The predicate of a verdict about straight lines: one class a line.
 std::string verdict_predicate(const ClipAnswer& answer) {
   const Input& input = answer.input;
@@ -183,6 +189,8 @@ std::string verdict_predicate(const ClipAnswer& answer) {
     if (cross > 0)
       return "crosses itself in its one pose" + apart + ": " + many(s.worst->start_pairs, "pair") +
              " of triangles, " + meeting_text(s.first->names, "crosses");
+    if (touch > 0)
+      return "touches itself in its one pose" + apart + ": " + meeting_text(s.first->names, "touches");
     if (close > 0)
       return "comes within " + input.thickness.asked.thickness.text + " of itself in its one pose" + apart +
              ": " + meeting_text(s.first->names, "comes close to");
@@ -209,19 +217,14 @@ std::string verdict_predicate(const ClipAnswer& answer) {
   if (close > 0)
     text += (text.empty() ? "comes within " : " and comes within ") + input.thickness.asked.thickness.text +
             " of itself in " + (text.empty() ? of_intervals(close, s) : std::to_string(close) + " more");
-  const auto verb = [&](bool crosses) {
-    return crosses ? "crosses" : is_thick ? "comes close to" : "touches";
-  };
   const AnswerSummary::Meeting& first = *s.first;
-  // What only lies on something at rest touches it in the first frame, and the next time it meets is news.
-  const bool at_start = first.moment.interval == 0 && first.moment.time == 0;
-  const bool only_touches = at_start && first.crosses && input.clip->header().rest.empty() &&
-                            answer.rest.total == 0 && answer.rest_touching.total > 0;
   text += apart + ", first at " + moment_text(input, first.moment) + ": " +
-          meeting_text(first.names, verb(first.crosses && !only_touches));
+          meeting_text(first.names, verb_of(first.how));
+  // Of what meets in the first frame, the next time that it meets is news.
+  const bool at_start = first.moment.interval == 0 && first.moment.time == 0;
   if (const auto& again = s.first_after_parting; at_start && again)
     text += "; once it had parted, again at " + moment_text(input, again->moment) + ": " +
-            meeting_text(again->names, verb(again->crosses));
+            meeting_text(again->names, verb_of(again->how));
   return text;
 }
 
@@ -341,9 +344,8 @@ bool is_known(const CrossingDepth& depth) {
 }  // namespace
 
 std::string event_text(const Input& input, const OverlapEvent& event) {
-  std::string out =
-      event.names.first +
-      (event.names.first == event.names.second ? " in itself: " : " in " + event.names.second + ": ");
+  std::string out = event.names.first + (event.crosses ? " in " : " touches ") +
+                    (event.names.first == event.names.second ? "itself" : event.names.second) + ": ";
   const std::string most = "at most " + distance_text(input, event.depth.upper);
   out += is_known(event.depth) ? distance_text(input, event.depth.lower) + " deep (" + most + ")"
                                : most + " deep, depth not known";
@@ -399,12 +401,20 @@ std::string not_measured_text(const ClipAnswer& answer) {
          std::to_string(OverlapEvents::kMostPairs) + " pairs cross, too many to say what lies in what\n";
 }
 
+// "lies in itself in 2 places and touches itself in 1 place".
+std::string places_text(const std::vector<OverlapEvent>& events) {
+  const auto crossing = static_cast<std::size_t>(std::ranges::count_if(events, &OverlapEvent::crosses));
+  const std::size_t touching = events.size() - crossing;
+  return (crossing > 0 ? "lies in itself in " + many(crossing, "place") : "") +
+         (crossing > 0 && touching > 0 ? " and " : "") +
+         (touching > 0 ? "touches itself at starts in " + many(touching, "place") : "");
+}
+
 std::string events_text(const ClipAnswer& answer) {
   const std::vector<OverlapEvent>& events = answer.events;
   std::string out = not_measured_text(answer);
   if (events.empty()) return out;
-  out += "  lies in itself in " + many(events.size(), "place") +
-         (events.size() > kMostEvents ? ", deepest in" : "") + ":\n";
+  out += "  " + places_text(events) + (events.size() > kMostEvents ? ", deepest in" : "") + ":\n";
   const std::vector<std::size_t> order = deepest_first(events);
   for (std::size_t i = 0; i < std::min(kMostEvents, order.size()); ++i)
     out += "    " + event_text(answer.input, events[order[i]]) + "\n";
@@ -445,7 +455,7 @@ std::string brief_clip_text(const ClipAnswer& answer) {
        {&said.ignored, &said.rest, &said.touching, &said.coinciding, &said.last, &said.identical})
     if (!line->empty()) out += "  " + *line + "\n";
   if (!answer.events.empty())
-    out += "  lies in itself in " + many(answer.events.size(), "place") +
+    out += "  " + places_text(answer.events) +
            ", deepest: " + event_text(answer.input, answer.events[deepest_first(answer.events)[0]]) + "\n";
   if (answer.input.motion) out += true_motion_text(answer.input, answer.true_motion);
   return out;

@@ -67,8 +67,11 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
   if (answer.verdict == IntervalVerdict::clear && first) parted_ = true;
   if (answer.verdict == IntervalVerdict::clear || answer.verdict == IntervalVerdict::undecided) return;
 
-  const bool crosses = answer.verdict == IntervalVerdict::intersects_at_start;
-  const ClipMoment moment{answer.index, crosses ? 0 : answer.time().value_or(0)};
+  const bool meets_at_start = answer.start.total + answer.start_touching.total > 0;
+  const ClipMoment moment{answer.index, meets_at_start ? 0 : answer.time().value_or(0)};
+  // With a thickness, what touches later is close first.
+  const bool is_close_first = !meets_at_start && !answer.touching.empty();
+  const IntervalVerdict how = is_close_first ? IntervalVerdict::close : answer.verdict;
   const std::size_t contacts =
       static_cast<std::size_t>(std::count_if(answer.found.contacts.begin(), answer.found.contacts.end(),
                                              [](const Contact& c) { return c.verdict == Verdict::contact; }));
@@ -78,15 +81,16 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
   std::set<NamePair> here;
   const auto meet = [&](TriangleId a, TriangleId b) {
     std::string x = names.place_of(a), y = names.place_of(b);
-    if (!first) first = Meeting{moment, crosses, {x, y}};
-    if (parted_ && !first_after_parting) first_after_parting = Meeting{moment, crosses, {x, y}};
+    if (!first) first = Meeting{moment, how, {x, y}};
+    if (parted_ && !first_after_parting) first_after_parting = Meeting{moment, how, {x, y}};
     here.insert(in_order(std::move(x), std::move(y)));
   };
-  for (const CrossingPair& pair : answer.start.pairs) meet(pair.first, pair.second);
+  for (const Crossings* pairs : {&answer.start, &answer.start_touching})
+    for (const CrossingPair& pair : pairs->pairs) meet(pair.first, pair.second);
   for (const Contact& contact : answer.found.contacts)
     if (contact.verdict == Verdict::contact)
       meet(names.triangle_of(contact.pair, false), names.triangle_of(contact.pair, true));
-  if (!first) first = Meeting{moment, crosses, {"the surface", "the surface"}};
+  if (!first) first = Meeting{moment, how, {"the surface", "the surface"}};
   for (const NamePair& both : here) ++met[both];
 }
 

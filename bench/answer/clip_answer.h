@@ -36,10 +36,11 @@ struct AnswerSummary {
   std::size_t left_out_contacts = 0;            // of what crosses at rest
   bool moves = false;                           // more than by rounding
   std::size_t first_index = 0, last_index = 0;  // of the intervals, which come in growing order
-  // The first moment at which something touches or crosses, and the names of what meets.
+  // The first moment at which something touches, crosses, or comes within the thickness, and the names of
+  // what meets.
   struct Meeting {
     ClipMoment moment;
-    bool crosses = false;  // else touches
+    IntervalVerdict how = IntervalVerdict::touches;  // or intersects_at_start, or close
     NamePair names;
   };
   std::optional<Meeting> first;

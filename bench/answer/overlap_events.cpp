@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/sort_unique.h"
 #include "core/base/stopwatch.h"
 
 namespace cscd::bench {
@@ -13,6 +14,8 @@ namespace {
 // What crosses at rest and bends is a little deeper in most poses: up to this factor, it is as deep as at
 // rest.
 constexpr double kDeeper = 1.1;
+// Depths below this share of the largest coordinate are nothing but rounding.
+constexpr double kRounding = 1e-12;
 
 CrossingPair pair_of(const std::array<TriangleId, 2>& segment) {
   return std::minmax(segment[0], segment[1]);
@@ -46,8 +49,9 @@ OverlapEvents::Kind OverlapEvents::kind_of(const Overlaps& all, const Overlap& o
   if (answer.explained_pairs.empty() && answer.ignored_pairs.empty()) return Kind::counted;
   std::size_t pairs = 0, counted = 0, ignored = 0;
   for_each_segment(all.crossing, overlap, [&](const auto& segment) {
+    const CrossingPair pair = pair_of(segment);
     ++pairs;
-    counted += answer.start.contains(pair_of(segment));
+    counted += answer.start.contains(pair) || answer.start_touching.contains(pair);
     ignored += std::ranges::binary_search(answer.ignored_pairs, pair_of(segment));
   });
   if (2 * counted > pairs) return Kind::counted;
@@ -110,22 +114,26 @@ std::size_t OverlapEvents::continued_event(const Overlaps& all, const Overlap& o
 }
 
 void OverlapEvents::extend(OverlapEvent& event, const Overlaps& all, const Overlap& overlap,
-                           const NamePair& names, std::size_t interval, std::span<const Vec3> start,
+                           const NamePair& names, const IntervalAnswer& answer, std::span<const Vec3> start,
                            const std::optional<double>& at_rest) {
   const bool is_new = event.depth_at.empty();
-  if (is_new) event.first = interval;
-  event.last = interval;
-  event.depth_at.resize(interval - event.first + 1, 0.0);
+  if (is_new) event.first = answer.index;
+  event.last = answer.index;
+  event.depth_at.resize(answer.index - event.first + 1, 0.0);
   event.depth_at.back() = std::max(event.depth_at.back(), overlap.depth.lower);
   const auto order = [](const CrossingDepth& depth) { return std::tuple(depth.lower, depth.upper); };
   if (!is_new && order(overlap.depth) <= order(event.depth)) return;
   event.names = names;
-  event.deepest = interval;
+  event.deepest = answer.index;
   event.depth = overlap.depth;
   event.curves = overlap.curves.size();
   event.pairs = event.vertices = 0;
   event.area = 0;
   event.at_rest = at_rest;
+  event.crosses = at_rest.has_value();
+  for_each_segment(all.crossing, overlap, [&](const auto& segment) {
+    event.crosses = event.crosses || !answer.start_touching.contains(pair_of(segment));
+  });
   const auto curve = [&](std::int32_t c) -> const CrossingCurve& {
     return all.crossing.curves[static_cast<std::size_t>(c)];
   };
@@ -142,16 +150,43 @@ void OverlapEvents::extend(OverlapEvent& event, const Overlaps& all, const Overl
                     : all.crossing.point(curve(overlap.curves.front()).nodes.front(), start);
 }
 
-OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<const Vec3> start,
+// Pieces may cross along edges of both alone, so that no two triangles pass through each other. A point of
+// one then lies off the other's skin, inside of it.
+void OverlapEvents::tell_crossing_pieces(std::span<const Vec3> start, Overlaps& all,
+                                         IntervalAnswer& answer) const {
+  if (answer.start_touching.total == 0) return;
+  double largest = 0;
+  for (const Vec3& x : start) largest = std::max(largest, x.cwiseAbs().maxCoeff());
+  std::vector<CrossingPair> crossing = answer.start.pairs;
+  for (Overlap& overlap : all.overlaps) {
+    if (overlap.depth.lower <= kRounding * largest) overlap.depth.lower = 0;
+    std::vector<CrossingPair> pairs;
+    for_each_segment(all.crossing, overlap, [&](const auto& segment) { pairs.push_back(pair_of(segment)); });
+    const auto crosses = [&](const CrossingPair& pair) { return answer.start.contains(pair); };
+    if (overlap.depth.lower > 0 || std::ranges::any_of(pairs, crosses))
+      std::ranges::copy_if(pairs, std::back_inserter(crossing),
+                           [&](const CrossingPair& pair) { return answer.start_touching.contains(pair); });
+  }
+  sort_unique(crossing);
+  std::erase_if(answer.start_touching.pairs,
+                [&](const CrossingPair& pair) { return std::ranges::binary_search(crossing, pair); });
+  answer.start_touching.total = answer.start_touching.pairs.size();
+  answer.start.pairs = std::move(crossing);
+  answer.start.total = answer.start.pairs.size();
+  answer.verdict = verdict_of(answer, input_.thickness.length > 0);
+}
+
+OverlapEvents::Here OverlapEvents::add(IntervalAnswer& answer, std::span<const Vec3> start,
                                        const Wanted& wanted) {
   const Stopwatch watch;
   Here here;
   std::vector<Mark> vertices, pairs;
   std::vector<std::size_t> going_on;
-  const Crossings all = all_crossings(answer);
+  const Crossings all = all_meetings(answer);
   not_measured_ += all.total > kMostPairs;
-  if (answer.start.total + answer.explained_pairs.size() > 0 && all.total <= kMostPairs) {
+  if (all.total > answer.ignored_pairs.size() && all.total <= kMostPairs) {
     here.overlaps = finder_.find(start, all.pairs, wanted.ways);
+    tell_crossing_pieces(start, here.overlaps, answer);
     for (const Overlap& overlap : here.overlaps.overlaps) {
       here.event.push_back(kNone);
       const Kind kind = kind_of(here.overlaps, overlap, answer);
@@ -167,7 +202,7 @@ OverlapEvents::Here OverlapEvents::add(const IntervalAnswer& answer, std::span<c
         event = events_.size();
         events_.emplace_back();
       }
-      extend(events_[event], here.overlaps, overlap, names, answer.index, start, at_rest);
+      extend(events_[event], here.overlaps, overlap, names, answer, start, at_rest);
       here.event.back() = event;
       going_on.push_back(event);
       for (const CrossingRegion& region : overlap.regions)
@@ -205,10 +240,13 @@ void OverlapEvents::assign_contacts(Here& here, const IntervalAnswer& answer) {
 }
 
 void keep_new(IntervalAnswer& answer, const OverlapEvents::Here& here, bool is_thick) {
-  answer.old_pairs = std::erase_if(answer.start.pairs, [&](const CrossingPair& pair) {
-    return here.pieces.find(pair.first, pair.second) != OverlapEvents::kNone;
-  });
-  answer.start.total -= answer.old_pairs;
+  for (Crossings* const pairs : {&answer.start, &answer.start_touching}) {
+    const std::size_t old = std::erase_if(pairs->pairs, [&](const CrossingPair& pair) {
+      return here.pieces.find(pair.first, pair.second) != OverlapEvents::kNone;
+    });
+    pairs->total -= old;
+    answer.old_pairs += old;
+  }
   std::vector<cscd::Contact> left;
   for (std::size_t i = 0; i < answer.found.contacts.size(); ++i) {
     const cscd::Contact& contact = answer.found.contacts[i];

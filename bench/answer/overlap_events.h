@@ -24,6 +24,9 @@ struct OverlapEvent {
   CrossingDepth depth;
   Vec3 point = Vec3::Zero();  // the deepest, or where none is known, some point of a curve
   std::size_t pairs = 0, curves = 0;
+  // Whether any of these pairs passes through each other. Where none does, the pieces only touch, or they
+  // cross along edges of both.
+  bool crosses = true;
   // Of the deepest region (CrossingRegion). There is none where no vertex lies in the other sheet.
   std::size_t vertices = 0;
   double area = 0;
@@ -64,7 +67,8 @@ class OverlapEvents {
     bool ways = false;    // of all vertices, in the regions
     bool pieces = false;  // also where the answer has no contacts
   };
-  Here add(const IntervalAnswer& answer, std::span<const Vec3> start, const Wanted& wanted);
+  // Of the pairs that only touch, those of pieces that cross are counted as crossing from here on.
+  Here add(IntervalAnswer& answer, std::span<const Vec3> start, const Wanted& wanted);
 
   // All events, in the order in which they begin.
   const std::vector<OverlapEvent>& all() const { return events_; }
@@ -75,6 +79,7 @@ class OverlapEvents {
   std::size_t not_measured() const { return not_measured_; }
 
  private:
+  void tell_crossing_pieces(std::span<const Vec3> start, Overlaps& all, IntervalAnswer& answer) const;
   void assign_contacts(Here& here, const IntervalAnswer& answer);
 
   using Mark =
@@ -88,7 +93,8 @@ class OverlapEvents {
   std::size_t continued_event(const Overlaps& all, const Overlap& overlap, const NamePair& names);
   NamePair names_of(const Overlaps& all, const Overlap& overlap) const;
   void extend(OverlapEvent& event, const Overlaps& all, const Overlap& overlap, const NamePair& names,
-              std::size_t interval, std::span<const Vec3> start, const std::optional<double>& at_rest);
+              const IntervalAnswer& answer, std::span<const Vec3> start,
+              const std::optional<double>& at_rest);
 
   const Input& input_;
   const SurfaceNames& names_;

@@ -61,9 +61,13 @@ bool meets(TrueVerdict verdict) {
   return verdict == TrueVerdict::touches || verdict == TrueVerdict::intersects_at_start;
 }
 
-// Of a span that starts crossed no more is asked, and nothing is known of how far it leaves straight lines.
-TrueAnswer crossing_at(double time, std::optional<CrossingPair> pair = {}) {
-  TrueAnswer out{.verdict = TrueVerdict::intersects_at_start, .from = time, .to = time, .pair = pair};
+// Of a span at whose start something meets no more is asked, and nothing is known of how far it leaves
+// straight lines.
+TrueAnswer met_at(double time, bool crosses, const CrossingPair& pair) {
+  TrueAnswer out{.verdict = crosses ? TrueVerdict::intersects_at_start : TrueVerdict::touches,
+                 .from = time,
+                 .to = time,
+                 .pair = pair};
   out.deviation = std::numeric_limits<double>::infinity();
   return out;
 }
@@ -95,10 +99,11 @@ TrueAnswerer::TrueAnswerer(const Input& input, const ElementaryTest& elementary,
 
 void TrueAnswerer::answer(const Motion& straight, IntervalAnswer& answer) {
   const Stopwatch asking;
-  left_out_.follow(all_crossings(answer));
+  left_out_.follow(all_meetings(answer));
   const double from = second_of(input_, answer.index), to = second_of(input_, answer.index + 1);
-  if (answer.verdict == IntervalVerdict::intersects_at_start) {
-    answer.motion = crossing_at(from);
+  const Crossings& met = answer.start.total > 0 ? answer.start : answer.start_touching;
+  if (met.total > 0) {
+    answer.motion = met_at(from, answer.start.total > 0, met.pairs.front());
   } else if (gap_between(straight, motion_.positions_at(from))) {
     // The surface moves far between the frame and the key that stands for it: the frame's start is not known
     // to be the key's.
@@ -114,8 +119,8 @@ void TrueAnswerer::answer(const Motion& straight, IntervalAnswer& answer) {
   } else {
     // What ends clear starts the next interval without crossings. Elsewhere the true pose is searched,
     // because that of the frame is another by rounding.
-    const auto pair = clear_until_ == from ? std::nullopt : motion_.crossing_at(from);
-    answer.motion = pair ? crossing_at(from, pair) : motion_.answer(from, to);
+    const auto met_here = clear_until_ == from ? std::nullopt : motion_.meeting_at(from);
+    answer.motion = met_here ? met_at(from, met_here->crosses, met_here->pair) : motion_.answer(from, to);
   }
   clear_until_ = answer.motion->verdict == TrueVerdict::clear ? std::optional(to) : std::nullopt;
   answer.motion_ms = asking.milliseconds();
@@ -149,10 +154,8 @@ void TrueSummary::add(const IntervalAnswer& answer, const SurfaceNames& names) {
   else
     ++without_bound;
   if (differs(answer)) ++(meets(own.verdict) ? only_true : only_straight);
-  std::optional<CrossingPair> pair = own.pair;
-  if (!pair && !answer.start.pairs.empty()) pair = answer.start.pairs.front();
-  if (!meets(own.verdict) || !pair) return;
-  const Meeting here{answer.index, own, {names.place_of(pair->first), names.place_of(pair->second)}};
+  if (!meets(own.verdict) || !own.pair) return;
+  const Meeting here{answer.index, own, {names.place_of(own.pair->first), names.place_of(own.pair->second)}};
   if (!first) first = here;
   if (!first_missed && differs(answer)) first_missed = here;
 }
@@ -209,7 +212,7 @@ std::string true_motion_text(const Input& input, const TrueSummary& s) {
            std::to_string(s.only_straight) + " in which the true motion has none";
   if (s.only_true + s.only_straight == 0) out += "agree with it in every interval that is decided";
   if (s.not_asked == s.intervals) {
-    out += "\n  every interval starts crossed, and no more is asked of such";
+    out += "\n  something meets at the start of every interval, and no more is asked of such";
   } else if (s.bounded() == 0) {
     out += "\n  of no interval as a whole is it known how far the surface leaves straight lines";
   } else {
@@ -219,7 +222,8 @@ std::string true_motion_text(const Input& input, const TrueSummary& s) {
       out += " (" + short_text(s.deviation / input.thickness.edge) + " mean edges)";
     if (s.without_bound > 0)
       out += ", apart from " + std::to_string(s.without_bound) + " intervals without a bound";
-    if (s.not_asked > 0) out += ", apart from " + std::to_string(s.not_asked) + " that start crossed";
+    if (s.not_asked > 0)
+      out += ", apart from " + std::to_string(s.not_asked) + " at whose start something meets";
   }
   if (s.jumps > 0)
     out += "; it jumps " + std::string(s.jumps == 1 ? "once" : std::to_string(s.jumps) + " times") +

@@ -45,7 +45,7 @@ struct TrueSummary {
   std::size_t parts = 0, pieces = 0, jumps = 0;
   double deviation = 0, ms = 0;   // deviation: the largest bound that is finite
   std::size_t without_bound = 0;  // intervals of which a vertex has none as a whole
-  std::size_t not_asked = 0;      // intervals that start crossed
+  std::size_t not_asked = 0;      // intervals at whose start something meets
   // The first contact or crossing of all, and the first that straight lines do not have.
   struct Meeting {
     std::size_t interval = 0;

@@ -15,16 +15,18 @@ class AtRest : public QueryProgram {
   static bool has(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
   }
-  // A box of half the width over the unit cube, whose upper side is at 1; its lower side is at `bottom`.
-  static std::string boxes(double bottom, double inset = 0.25) {
+  // A box of half the width over the unit cube, whose upper side is at 1; its lower side is at `bottom`, and
+  // it lies to one side by `shift`.
+  static std::string boxes(double bottom, double inset = 0.25, double shift = 0) {
     std::string obj;
     for (const bool upper : {false, true})
       for (const double z : {0.0, 1.0})
         for (const double y : {0.0, 1.0})
           for (const double x : {0.0, 1.0}) {
             const double low = upper ? inset : 0, width = upper ? 1 - 2 * inset : 1;
-            obj += "v " + std::to_string(low + width * x) + " " + std::to_string(low + width * y) + " " +
-                   std::to_string(upper ? bottom + 0.5 * z : z) + "\n";
+            obj += "v " + std::to_string(low + width * x + (upper ? shift : 0)) + " " +
+                   std::to_string(low + width * y) + " " + std::to_string(upper ? bottom + 0.5 * z : z) +
+                   "\n";
           }
     constexpr int kFaces[][3] = {{1, 3, 4}, {1, 4, 2}, {5, 6, 8}, {5, 8, 7}, {1, 2, 6}, {1, 6, 5},
                                  {3, 7, 8}, {3, 8, 4}, {1, 5, 7}, {1, 7, 3}, {2, 4, 8}, {2, 8, 6}};
@@ -45,6 +47,79 @@ class AtRest : public QueryProgram {
   static std::string sentence(const json& document) { return document["summary"]["sentence"]; }
   int status(const std::string& words) const { return run("cscd query f.0.obj " + words).status; }
 };
+
+// The verdict of an interval, how its first sentence and the page's begin, and how many pairs of triangles
+// cross and touch at its start. Mutations: what touches at a start crosses; what crosses beside it touches.
+TEST_F(AtRest, WhatOnlyTouchesAtAStartIsSaidToTouch) {
+  struct Pose {
+    const char* what;
+    double bottom, inset, shift;
+    bool crosses, touches;
+  };
+  for (const Pose& pose :
+       {Pose{"rests on it", 1, 0.25, 0, false, true}, Pose{"rests, as wide", 1, 0, 0, false, true},
+        Pose{"lies half beside it", 1, 0.25, 0.5, false, true},
+        Pose{"shares a part of an edge", 1, 0.25, 0.75, false, true},
+        Pose{"shares a corner's height alone", 1, 0.25, 1.5, false, false},
+        Pose{"is pressed in", 0.75, 0.25, 0, true, false},
+        Pose{"crosses along edges of both alone", 0.75, 0, 0, true, false}}) {
+    SCOPED_TRACE(pose.what);
+    // The first frame is apart, and the third slides or lifts from the pose.
+    put("f.0.obj", boxes(2));
+    put("f.1.obj", boxes(pose.bottom, pose.inset, pose.shift));
+    for (const bool lifts : {false, true}) {
+      put("f.2.obj", boxes(pose.bottom + (lifts ? 0.5 : 0), pose.inset, pose.shift + (lifts ? 0 : 0.0625)));
+      const json found = answer("f.0.obj --frames 1:2"), &interval = found["intervals"][0];
+      EXPECT_EQ(interval["verdict"], pose.crosses   ? "intersects_at_start"
+                                     : pose.touches ? "touches"
+                                                    : "clear");
+      EXPECT_EQ(interval["start_pairs_total"] > 0, pose.crosses) << interval;
+      EXPECT_TRUE(pose.crosses || (interval["start_touching"] > 0) == pose.touches) << interval;
+      EXPECT_EQ(interval["starts_embedded"], !pose.crosses && !pose.touches);
+      const std::string said = sentence(found), text = run("cscd query f.0.obj --frames 1:2").out;
+      const bool meets = pose.crosses || pose.touches;
+      EXPECT_EQ(has(said, pose.crosses ? " crosses itself at the start of 1 of 1 interval, first at frame 1 ("
+                                       : " touches itself in 1 of 1 interval, first at frame 1 ("),
+                meets)
+          << said;
+      EXPECT_EQ(has(said, "cross"), pose.crosses) << said;
+      EXPECT_EQ(
+          has(text, pose.crosses ? " 0 touch, 1 cross at their start" : " 1 touch, 0 cross at their start"),
+          meets)
+          << text;
+      EXPECT_EQ(has(text, "lies in itself"), pose.crosses) << text;
+      if (!pose.touches || pose.crosses) continue;
+      EXPECT_EQ(interval["time"], 0);
+      EXPECT_GT(interval["contacts"].size(), 0u);
+      for (const json& event : found["summary"]["events"]) EXPECT_EQ(event["crosses"], false);
+    }
+  }
+}
+
+TEST_F(AtRest, WhatTouchesInTheLastPoseOrInOnePoseIsSaidToTouch) {
+  put_frames({1.5, 1});
+  const json last = answer("f.0.obj")["last_pose"];
+  EXPECT_EQ(last["pairs_total"], 0);
+  EXPECT_GT(last["touching"], 0);
+  EXPECT_FALSE(has(run("cscd query f.0.obj").out, "ends crossed"));
+  put("lone.obj", boxes(1));
+  EXPECT_TRUE(has(sentence(answer("lone.obj")), "lone.obj touches itself in its one pose: the surface, "))
+      << answer("lone.obj");
+  EXPECT_EQ(run("cscd query lone.obj --fail-on-contact").status, 3);
+}
+
+// With a thickness, what is close at first and touches later is said to come close at that moment.
+TEST_F(AtRest, WhatTouchesAtAStartTouchesWithinAThicknessToo) {
+  put_frames({1, 1.5});
+  const json rests = answer("f.0.obj --thickness 0.125");
+  EXPECT_EQ(rests["intervals"][0]["verdict"], "touches");
+  EXPECT_TRUE(has(sentence(rests), "first at frame 0 (0 s): the surface, component 0 touches "))
+      << sentence(rests);
+  put_frames({1.5, 1});
+  const json falls = answer("f.0.obj --thickness 0.125");
+  EXPECT_EQ(falls["intervals"][0]["verdict"], "touches");
+  EXPECT_TRUE(has(sentence(falls), " comes close to the surface, component ")) << sentence(falls);
+}
 
 // Mutations: what touches at rest is left out for good; what has parted goes on being left out.
 TEST_F(AtRest, WhatLiesOnEachOtherIsAnAnswer) {

@@ -155,22 +155,23 @@ class Marker {
     marks.touches.resize(input_.mesh.triangle_count());
     marks.crosses.resize(input_.mesh.triangle_count());
     if (frame < input_.clip->interval_count()) {
-      const IntervalAnswer answer = answerer_.answer(frame);
+      IntervalAnswer answer = answerer_.answer(frame);
       const scenes::ClipInterval moving = input_.clip->load(frame);
       add_start(answer, moving.motion.start(), marks);
       add_contacts(answer, moving.motion, marks);
       add_clusters(moving, marks);
     } else {
-      add_start(answerer_.pose(frame), input_.clip->load_frame(frame).positions, marks);
+      IntervalAnswer answer = answerer_.pose(frame);
+      add_start(answer, input_.clip->load_frame(frame).positions, marks);
     }
     return marks;
   }
 
  private:
-  void add_start(const IntervalAnswer& answer, std::span<const Vec3> start, IntervalMarks& marks) {
+  void add_start(IntervalAnswer& answer, std::span<const Vec3> start, IntervalMarks& marks) {
+    add_overlaps(events_.add(answer, start, {.ways = true}), start, marks);
     for (const CrossingPair& pair : answer.start.pairs)
       marks.crosses[+pair.first] = marks.crosses[+pair.second] = 1;
-    add_overlaps(events_.add(answer, start, {.ways = true}), start, marks);
   }
 
   void add_contacts(const IntervalAnswer& answer, const Motion& motion, IntervalMarks& marks) const {

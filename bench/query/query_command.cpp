@@ -105,9 +105,9 @@ ClipAnswer answer_clip(const QueryOptions& options, Input& input, const SurfaceN
     watchdog.restart();
     IntervalAnswer interval = answerer.answer(i);
     const Motion motion = input.clip->load(i).motion;
+    const OverlapEvents::Here here = events.add(interval, motion.start(), {.pieces = options.new_contacts});
     if (true_motion) true_motion->answer(motion, interval);
     answer.true_motion.add(interval, names);
-    const OverlapEvents::Here here = events.add(interval, motion.start(), {.pieces = options.new_contacts});
     interval.event_of_contact = here.event_of_contact;
     if (options.new_contacts) keep_new(interval, here, input.thickness.length > 0);
     answer.summary.add(interval, motion, names);

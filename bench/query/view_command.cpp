@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "bench/answer/answer.h"
@@ -79,7 +80,7 @@ json true_moment(const Input& input, const SurfaceNames& names, const IntervalAn
                          : own.verdict == TrueVerdict::touches ? "touches"
                                                                : "comes close to");
   } else {
-    text += crosses ? "crosses at its start" : std::string(to_string(own.verdict));
+    text += to_string(own.verdict);
   }
   const bool lines = answer.verdict != IntervalVerdict::clear;
   if (differs(answer)) text += lines ? ", where straight lines touch" : ", where straight lines do not";
@@ -130,10 +131,19 @@ json record_clip(ViewRequest options, Input input, Sections& sections) {
       clip.add_frame(input.clip->load_frame(i));
       bool touches = false;
       std::optional<TrueAnswer> motion;  // the same beside all strategies
+      std::pair<Crossings, Crossings> start;
       for (const auto& contestant : contestants) {
         watchdog.restart();
         IntervalAnswer answer = contestant->answerer.answer(i);
         const scenes::ClipInterval loaded = input.clip->load(i);
+        // All strategies see the same starts.
+        if (contestant == contestants.front()) {
+          overlaps.add(events.add(answer, loaded.motion.start(), {.ways = true}), loaded.motion.start());
+          start = {answer.start, answer.start_touching};
+        } else {
+          std::tie(answer.start, answer.start_touching) = start;
+          answer.verdict = verdict_of(answer, input.thickness.length > 0);
+        }
         if (true_motion && contestant == contestants.front()) {
           true_motion->answer(loaded.motion, answer);
           motion = answer.motion;
@@ -145,9 +155,6 @@ json record_clip(ViewRequest options, Input input, Sections& sections) {
         answer.motion = motion;
         contestant->recording.add(answer, loaded, texts);
         touches = touches || !answer.found.contacts.empty();
-        // All strategies see the same starts.
-        if (contestant == contestants.front())
-          overlaps.add(events.add(answer, loaded.motion.start(), {.ways = true}), loaded.motion.start());
       }
       if (touches && input.clip->header().predicted) clip.add_other_end(input.clip->load(i).motion.end());
       progress.advance();

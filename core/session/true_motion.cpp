@@ -31,6 +31,11 @@ constexpr double kLooser = 4;
 // no more of it. A few are tried all the same: what flies straight through a face is as near for a moment.
 constexpr double kFinest = 1e-9;
 constexpr std::size_t kPiecesLyingOn = 12;
+// A contact at the very end of a piece is looked for from this share of the piece before that end to the same
+// share behind it, which no halving divides. What lies on something for long has many such ends, so a span
+// looks round few of them.
+constexpr double kAround = 0.618;
+constexpr std::size_t kMostEnds = 64;
 // No square of a length below this overflows.
 constexpr double kMostLength = 1e150;
 
@@ -140,7 +145,7 @@ bool TrueMotion::is_out(const FeaturePair& pair) const {
          (options_.left_out != nullptr && options_.left_out->explains(pair));
 }
 
-std::optional<CrossingPair> TrueMotion::crossing_at(double time) {
+std::optional<TrueMotion::Meeting> TrueMotion::meeting_at(double time) {
   Places here;
   place_all(time, here);
   Crossings crossings;
@@ -148,15 +153,18 @@ std::optional<CrossingPair> TrueMotion::crossing_at(double time) {
                      .crossings = &crossings,
                      .most_crossings = std::numeric_limits<std::size_t>::max()},
                     found_);
-  const auto first = std::ranges::find_if(
-      crossings.pairs, [&](const CrossingPair& pair) { return !is_out(triangles_of(pair)); });
-  return first == crossings.pairs.end() ? std::nullopt : std::optional(*first);
+  std::erase_if(crossings.pairs, [&](const CrossingPair& pair) { return is_out(triangles_of(pair)); });
+  const Meetings met = tell_meetings_apart(setup_.mesh, here.at, crossings);
+  if (met.crossing.total > 0) return Meeting{met.crossing.pairs.front(), true};
+  if (met.touching.total > 0) return Meeting{met.touching.pairs.front(), false};
+  return std::nullopt;
 }
 
 TrueAnswer TrueMotion::answer(double from, double to) {
   answer_ = {.from = from, .to = to};
   narrow_ = options_.narrow * (to - from);
   more_left_ = options_.most_more_pieces;
+  ends_left_ = kMostEnds;
   Places start, end;
   if (last_.time == from)
     start = std::move(last_);
@@ -166,6 +174,7 @@ TrueAnswer TrueMotion::answer(double from, double to) {
   for (bool more = true; more;) {
     const std::optional<VertexPaths::Jump> jump = paths_.next_jump(begin, to);
     const double stop = jump ? jump->before : to;
+    stretch_from_ = begin, stretch_to_ = stop;
     if (stop > begin) {
       place_all(stop, end);
       const double widest = largest_width(start, end);
@@ -179,10 +188,10 @@ TrueAnswer TrueMotion::answer(double from, double to) {
     place_all(begin, after);
     if (more && !all_finite(after.error)) {
       more = give_up(begin, begin);
-    } else if (const auto pair = more ? crossing_at(begin) : std::nullopt) {
-      answer_.verdict = TrueVerdict::intersects_at_start;
+    } else if (const auto met = more ? meeting_at(begin) : std::nullopt) {
+      answer_.verdict = met->crosses ? TrueVerdict::intersects_at_start : TrueVerdict::touches;
       answer_.from = answer_.to = begin;
-      answer_.pair = pair;
+      answer_.pair = met->pair;
       more = false;
     }
     more = more && begin < to;
@@ -355,6 +364,13 @@ bool TrueMotion::look_at(Piece& piece, const Places& from, const Places& to,
   bool proven = (resolved || narrow) && proves_contact(piece, from, to, near);
   const TrueAnswer contact = answer_;
   if (proven && narrow) return false;
+  if (resolved && !proven) {
+    const double reach = kAround * (to.time - from.time);
+    const bool ends_unknown = unknown_to_;
+    if ((unknown_from_ && proves_contact_around(piece, from.time, reach, near)) ||
+        (ends_unknown && proves_contact_around(piece, to.time, reach, near)))
+      return false;
+  }
   if (resolved && !proven && !look_on(within)) {
     say_close(from.time, to.time, within, near);
     return true;
@@ -366,10 +382,7 @@ bool TrueMotion::look_at(Piece& piece, const Places& from, const Places& to,
     say_close(from.time, to.time, within, near);
     return true;
   }
-  Places between{middle, std::vector<Vec3>(piece.vertices.size()),
-                 std::vector<double>(piece.vertices.size())};
-  paths_.positions(middle, piece.vertices, between.at, between.error);
-  require_finite(between.at, "positions of the true motion");
+  const Places between = places_of(piece, middle);
   const bool looked_on = std::exchange(looks_on_, resolved);
   const bool more = look_at(piece, from, between, near) && look_at(piece, between, to, near);
   looks_on_ = looked_on;
@@ -380,6 +393,28 @@ bool TrueMotion::look_at(Piece& piece, const Places& from, const Places& to,
   answer_ = contact;
   answer_.pieces = pieces;
   return false;
+}
+
+TrueMotion::Places TrueMotion::places_of(const Piece& piece, double time) const {
+  Places out{time, std::vector<Vec3>(piece.vertices.size()), std::vector<double>(piece.vertices.size())};
+  paths_.positions(time, piece.vertices, out.at, out.error);
+  require_finite(out.at, "positions of the true motion");
+  return out;
+}
+
+// Looks for a contact round the end of a piece, at which it cannot be told whether an edge meets a triangle,
+// and narrows it down. Paths that are bounded there are continuous, and no more is asked of them.
+bool TrueMotion::proves_contact_around(Piece& piece, double end, double reach,
+                                       const std::vector<FeaturePair>& pairs) {
+  if (ends_left_ == 0) return false;
+  --ends_left_;
+  for (bool proven = false;; proven = true, reach /= 2) {
+    const double from = std::max(end - reach, stretch_from_), to = std::min(end + reach, stretch_to_);
+    paths_.deviations(from, to, piece.vertices, piece.deviation);
+    if (!all_finite(piece.deviation)) return proven;
+    if (!proves_contact(piece, places_of(piece, from), places_of(piece, to), pairs)) return proven;
+    if (to - from <= narrow_) return true;
+  }
 }
 
 // Looks for an edge that meets a triangle at one end and is apart from it at the other, whatever the true
@@ -397,6 +432,7 @@ bool TrueMotion::proves_contact(const Piece& piece, const Places& from, const Pl
     return edge_meets_triangle(at(places, edge[0]), at(places, edge[1]), at(places, face[0]),
                                at(places, face[1]), at(places, face[2]), error);
   };
+  unknown_from_ = unknown_to_ = false;
   for (const FeaturePair& pair : pairs)
     for (const CrossingPair& both : carriers(setup_.mesh, pair)) {
       if (is_out(triangles_of(both))) continue;
@@ -407,6 +443,8 @@ bool TrueMotion::proves_contact(const Piece& piece, const Places& from, const Pl
           const Triangle& face = setup_.mesh.corners(other);
           if (std::ranges::find_first_of(edge, face) != edge.end()) continue;
           const Meets before = meets(from, edge, face), after = meets(to, edge, face);
+          unknown_from_ = unknown_from_ || before == Meets::unknown;
+          unknown_to_ = unknown_to_ || after == Meets::unknown;
           if (before == Meets::unknown || after == Meets::unknown || before == after) continue;
           answer_.verdict = TrueVerdict::touches;
           answer_.from = from.time, answer_.to = to.time;

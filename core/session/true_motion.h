@@ -19,8 +19,10 @@ namespace cscd {
 
 // What is known of the true paths of a span of time (core/soundness.md, "The true motion").
 enum class TrueVerdict {
-  clear,                // proven: nothing touches
-  touches,              // proven: an edge pierces a face at one moment and is apart from it at another
+  clear,  // proven: nothing touches
+  // Proven: an edge pierces a face at one moment and is apart from it at another. Or triangles touch, without
+  // crossing, at the start or after a jump.
+  touches,
   close,                // two features come within a distance, and what they do there cannot be told apart
   intersects_at_start,  // triangles cross after a jump within the span
   undecided             // the bounds on the paths do not suffice
@@ -34,7 +36,8 @@ struct TrueAnswer {
   // Of `close`: no more than this far apart at some time of the span; of all spans the largest such distance.
   double within = 0;
   // Two triangles that come together there; of `touches`, an edge of one of them pierces the other at `to`,
-  // or at `from` where `parts_again`, and not at the other end; after a jump, two that cross there.
+  // or at `from` where `parts_again`, and not at the other end. Where `from` is `to`, two that cross or touch
+  // there.
   std::optional<CrossingPair> pair = {};
   bool parts_again = false;
   double deviation = 0;    // the largest bound of any vertex between two jumps; may be infinity
@@ -75,11 +78,16 @@ class TrueMotion {
   TrueMotion(const VertexPaths& paths, const StrategyInput& setup, const Strategy& strategy,
              const TrueMotionOptions& options);
 
-  // Answers a span at whose start nothing crosses but what is left out.
+  // Answers a span at whose start nothing meets but what is left out.
   TrueAnswer answer(double from, double to);
-  // Two triangles that cross at a time and are not left out. Where places are not known, whatever it says, an
-  // answer about a span that starts or ends there is undecided.
-  std::optional<CrossingPair> crossing_at(double time);
+  // Two triangles that meet at a time and are not left out: two that cross, or where none do, two that touch.
+  // Where places are not known, whatever it says, an answer about a span that starts or ends there is
+  // undecided.
+  struct Meeting {
+    CrossingPair pair;
+    bool crosses;
+  };
+  std::optional<Meeting> meeting_at(double time);
   // The positions of all vertices at a time that was asked about.
   std::span<const Vec3> positions_at(double time);
 
@@ -107,6 +115,8 @@ class TrueMotion {
   bool look_at(Piece& piece, const Places& from, const Places& to, const std::vector<FeaturePair>& pairs);
   bool proves_contact(const Piece& piece, const Places& from, const Places& to,
                       const std::vector<FeaturePair>& pairs);
+  bool proves_contact_around(Piece& piece, double end, double reach, const std::vector<FeaturePair>& pairs);
+  Places places_of(const Piece& piece, double time) const;
   void say_close(double from, double to, double within, const std::vector<FeaturePair>& pairs);
   bool give_up(double from, double to);
   // Whether features within this distance, which is below the resolution, are looked at in shorter pieces.
@@ -130,6 +140,11 @@ class TrueMotion {
   ContactSet found_;
   TrueAnswer answer_;
   double narrow_ = 0;
+  double stretch_from_ = 0, stretch_to_ = 0;  // the part of the span between two jumps that is looked at
+  // Whether it could not be told at the ends of the last piece that was to prove a contact whether some edge
+  // meets a face.
+  bool unknown_from_ = false, unknown_to_ = false;
+  std::size_t ends_left_ = 0;             // of pieces, round which a contact may still be looked for
   bool looks_on_ = false;                 // what is looked at is below the resolution
   std::size_t more_ = 0, more_left_ = 0;  // pieces below it that may still be looked at, there and in all
 };

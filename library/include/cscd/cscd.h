@@ -320,9 +320,11 @@ class CSCD_EXPORT SelfCollision {
   };
   struct PathsAnswer {
     enum class Verdict {
-      clear,    // proven: nothing touches; and nothing crosses, but what Exclusions let through
-      touches,  // proven: an edge pierces a face at one end of the span below and is apart at the other
-      close,    // two features come within a distance, and whether they touch cannot be told
+      clear,  // proven: nothing touches; and nothing crosses, but what Exclusions let through
+      // Proven: an edge pierces a face at one end of the span below and is apart at the other. Or faces
+      // touch, without crossing, at the start.
+      touches,
+      close,                // two features come within a distance, and whether they touch cannot be told
       intersects_at_start,  // faces cross at the start
       undecided             // the bounds of the acceleration do not suffice
     };
