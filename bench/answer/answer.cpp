@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/strategies/catalogue.h"
+#include "bench/strategies/strategy_row.h"
 
 namespace cscd::bench {
 namespace {
@@ -56,12 +57,12 @@ Crossings all_meetings(const IntervalAnswer& answer) {
   return all;
 }
 
-Answerer::Answerer(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+Answerer::Answerer(const Input& input, const Strategy& strategy, const ElementaryTest& elementary,
                    const AnswerOptions& options)
     : input_(input),
       elementary_(elementary),
-      session_(input.name, input.setup(elementary), strategy, complete_fallback(), input.rest(),
-               as_input_says(options, input)) {}
+      session_(input.name, setup_for(strategy, input.setup(elementary), input.clip->interval_count()),
+               strategy, complete_fallback(), input.rest(), as_input_says(options, input)) {}
 
 // A start of which not all pairs are kept crosses.
 void Answerer::tell_touching_from_crossing(const Motion& motion, IntervalAnswer& answer) const {
@@ -85,39 +86,18 @@ void Answerer::tell_touching_from_close(const Motion& motion, IntervalAnswer& an
   }
 }
 
-IntervalAnswer Answerer::answer_step(const Motion& motion, const Rig::Interval* bones,
-                                     const std::string& where) {
+IntervalAnswer Answerer::answer(std::size_t index, const scenes::ClipInterval& interval) {
   IntervalAnswer answer;
+  answer.index = index;
   const bool is_thick = input_.thickness.length > 0;
   try {
-    session_.step(motion, bones, answer);
-    tell_touching_from_crossing(motion, answer);
-    if (is_thick) tell_touching_from_close(motion, answer);
+    session_.step(interval.motion, interval.bones ? &*interval.bones : nullptr, answer);
+    tell_touching_from_crossing(interval.motion, answer);
+    if (is_thick) tell_touching_from_close(interval.motion, answer);
   } catch (const MemoryShortage& shortage) {
-    throw too_many_pairs(shortage, where);
+    throw too_many_pairs(shortage, "interval " + std::to_string(index));
   }
   answer.verdict = verdict_of(answer, is_thick);
-  return answer;
-}
-
-IntervalAnswer Answerer::answer(std::size_t index) {
-  const Stopwatch loading;
-  const scenes::ClipInterval interval = input_.clip->load(index);
-  const double load_ms = loading.milliseconds();
-  IntervalAnswer answer = answer_step(interval.motion, interval.bones ? &*interval.bones : nullptr,
-                                      "interval " + std::to_string(index));
-  answer.index = index;
-  answer.load_ms = load_ms;
-  return answer;
-}
-
-IntervalAnswer Answerer::pose(std::size_t frame) {
-  const scenes::FrameView view = input_.clip->load_frame(frame);
-  const Rig::Interval bones{view.bones, view.bones};
-  IntervalAnswer answer =
-      answer_step(Motion(view.positions, view.positions), view.bones.empty() ? nullptr : &bones,
-                  "frame " + std::to_string(frame));
-  answer.index = frame;
   return answer;
 }
 

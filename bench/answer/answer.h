@@ -63,13 +63,12 @@ class Answerer {
   // Prepares the strategy. What the input says is ignored is no part of answers. Throws InputError where the
   // input lacks what the strategy needs, where options do not go together, and where too many triangles cross
   // at rest. `input` must outlive it.
-  Answerer(Input& input, const Strategy& strategy, const ElementaryTest& elementary,
+  Answerer(const Input& input, const Strategy& strategy, const ElementaryTest& elementary,
            const AnswerOptions& options);
 
-  IntervalAnswer answer(std::size_t interval);
-  // Answers a frame as an interval in which nothing moves, best after the interval that ends there: what
-  // crosses in the frame is what its answer says of the start.
-  IntervalAnswer pose(std::size_t frame);
+  // `interval` is the one with that number; or the pose of that frame, in which nothing moves, best after the
+  // interval that ends there.
+  IntervalAnswer answer(std::size_t index, const scenes::ClipInterval& interval);
 
   // Returns what preparing the strategy has found out; empty where it saves nothing.
   std::vector<std::byte> saved_preparation() const { return session_.saved_preparation(); }
@@ -84,12 +83,10 @@ class Answerer {
   int threads() const { return session_.threads(); }
 
  private:
-  // `where` names the step in errors.
-  IntervalAnswer answer_step(const Motion& motion, const Rig::Interval* bones, const std::string& where);
   void tell_touching_from_crossing(const Motion& motion, IntervalAnswer& answer) const;
   void tell_touching_from_close(const Motion& motion, IntervalAnswer& answer) const;
 
-  Input& input_;
+  const Input& input_;
   const ElementaryTest& elementary_;
   Session session_;
 };

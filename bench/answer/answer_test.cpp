@@ -51,15 +51,17 @@ void expect_right(Input& input, const Strategy& strategy, const AnswerOptions& o
     rest = {input.mesh,
             tell_meetings_apart(input.mesh, input.rest(), looked.find_all(input.rest(), kAll)).crossing};
   for (std::size_t i = range.first; i < range.last; ++i) {
-    const IntervalAnswer answer = answerer.answer(i);
+    const IntervalAnswer answer = answerer.answer(i, input.clip->load(i));
     ++verdicts[static_cast<std::size_t>(answer.verdict)];
     const scenes::ClipInterval interval = input.clip->load(i);
     Crossings start = looked.find_all(interval.motion.start(), kAll);
     EXPECT_EQ(answer.starts_embedded, start.total == 0) << i;
-    EXPECT_EQ(answer.start.total + answer.rest_pairs, start.total) << i;
+    EXPECT_EQ(answer.start.total + answer.start_touching.total + answer.rest_pairs, start.total) << i;
     rest.follow(start);
     std::erase_if(start.pairs, [&](const CrossingPair& pair) { return rest.explains(pair); });
-    ASSERT_EQ(answer.start.pairs, start.pairs) << i;
+    const Meetings met = tell_meetings_apart(input.mesh, interval.motion.start(), start);
+    ASSERT_EQ(answer.start.pairs, met.crossing.pairs) << i;
+    ASSERT_EQ(answer.start_touching.pairs, met.touching.pairs) << i;
 
     ContactSet expected;
     reference->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, expected);
@@ -72,7 +74,7 @@ void expect_right(Input& input, const Strategy& strategy, const AnswerOptions& o
     if (answer.strategy->guarantee == Guarantee::complete && !options.first) {
       EXPECT_EQ(digest(answer.found), digest(expected)) << i;
     }
-    const bool crosses = !start.pairs.empty();
+    const bool crosses = !met.crossing.pairs.empty();
     EXPECT_EQ(answer.verdict, crosses                     ? IntervalVerdict::intersects_at_start
                               : expected.contacts.empty() ? IntervalVerdict::clear
                                                           : IntervalVerdict::touches)
@@ -91,7 +93,7 @@ TEST(AnswerSummary, TakesRoundingForNoMotion) {
     const SurfaceNames names(input);
     Answerer answerer(input, strategy_named("base"), exact(), {});
     AnswerSummary summary;
-    summary.add(answerer.answer(0), input.clip->load(0).motion, names);
+    summary.add(answerer.answer(0, input.clip->load(0)), input.clip->load(0).motion, names);
     EXPECT_EQ(summary.moves, by > 1e-9) << by;
   }
 }
@@ -174,15 +176,16 @@ TEST(Answerer, TakesARestPoseThatIsNotAFrame) {
   Answerer answerer(input, strategy_named("drvbc_fast_complete"), exact(), {});
   EXPECT_GT(answerer.rest_crossings().total, 10u);
   for (const std::size_t interval : {0u, 1u}) {
-    const IntervalAnswer answer = answerer.answer(interval);
+    const IntervalAnswer answer = answerer.answer(interval, input.clip->load(interval));
     EXPECT_EQ(answer.verdict, IntervalVerdict::clear) << interval;
     EXPECT_GT(answer.rest_pairs, 10u) << interval;
     EXPECT_EQ(answer.rest_contacts > 0, interval == 1) << "it flies away from there";
   }
-  EXPECT_EQ(answerer.answer(2).verdict, IntervalVerdict::touches)
+  EXPECT_EQ(answerer.answer(2, input.clip->load(2)).verdict, IntervalVerdict::touches)
       << "it has parted, and flies to where it rests";
-  EXPECT_EQ(answerer.pose(3).verdict, IntervalVerdict::intersects_at_start);
-  EXPECT_EQ(answerer.pose(3).rest_pairs, 0u);
+  const IntervalAnswer pose = answerer.answer(3, {Motion(balls.positions, balls.positions), std::nullopt});
+  EXPECT_EQ(pose.verdict, IntervalVerdict::intersects_at_start);
+  EXPECT_EQ(pose.rest_pairs, 0u);
 }
 
 // Coplanar triangles that slide onto each other: boxes without end, cut off after a few.
@@ -191,7 +194,7 @@ TEST(Answerer, SaysWhatAnInexactTestCannotTell) {
                           {test::corners(0, 1, 2), test::corners(3, 4, 5)}};
   Input input = input_of(shape, {shape.positions, moved_part(shape, 3, {-5, 0.1, 0})});
   Answerer inexact(input, strategy_named("base"), elementary_test_named("inclusion@1e-9:10"), {});
-  const IntervalAnswer answer = inexact.answer(0);
+  const IntervalAnswer answer = inexact.answer(0, input.clip->load(0));
   EXPECT_FALSE(answer.found.contacts.empty());
   EXPECT_EQ(answer.time(), std::nullopt);
   EXPECT_EQ(answer.verdict, IntervalVerdict::undecided);

@@ -122,16 +122,6 @@ std::size_t identical_triangles(const TriangleMesh& mesh) {
   return found == mesh.defects().end() ? 0 : found->count;
 }
 
-std::optional<IntervalAnswer> last_pose_of(const Input& input, std::size_t frame, Answerer& answerer,
-                                           OverlapEvents& events) {
-  if (input.is_one_pose) return std::nullopt;
-  IntervalAnswer answer = answerer.pose(frame);
-  answer.found.contacts.clear();  // those of the pose are no contacts of an interval
-  answer.touching.clear();
-  events.add(answer, input.clip->load_frame(frame).positions, {});
-  return answer;
-}
-
 ClipAnswer prepared_answer(const Input& input, const SurfaceNames& names, const Strategy& strategy,
                            const ElementaryTest& elementary, const AnswerOptions& options,
                            const Answerer& answerer) {

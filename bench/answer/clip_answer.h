@@ -107,10 +107,10 @@ struct ClipAnswer {
   // pose.
   std::optional<IntervalAnswer> last_pose = {};
 
-  // Takes what last_pose_of() says, then the events of all poses, and the milliseconds that it took to find
-  // them.
-  void take(std::optional<IntervalAnswer> last, const OverlapEvents& found) {
-    last_pose = std::move(last);
+  // The worst verdict of any interval: in its true motion, where that was asked for.
+  IntervalVerdict verdict() const { return input.motion ? true_motion.verdict() : summary.verdict(); }
+  // Takes the events of all poses, and the milliseconds that it took to find them.
+  void take(const OverlapEvents& found) {
     events = found.all();
     not_measured = found.not_measured();
     summary.overlap_ms = found.milliseconds();
@@ -120,11 +120,6 @@ struct ClipAnswer {
 // How many triangles of a surface have the same three corners as another one. Two such triangles share all
 // that they have, so that nothing is said of them against each other.
 std::size_t identical_triangles(const TriangleMesh& mesh);
-
-// Answers the frame in which the last interval ends, after that interval, and adds what overlaps there to the
-// events. Returns nothing for a file of one pose, whose intervals start in it.
-std::optional<IntervalAnswer> last_pose_of(const Input& input, std::size_t frame, Answerer& answerer,
-                                           OverlapEvents& events);
 
 // Returns the answer of which no interval is known yet. The arguments must outlive it.
 ClipAnswer prepared_answer(const Input& input, const SurfaceNames& names, const Strategy& strategy,

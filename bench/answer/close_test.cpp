@@ -43,7 +43,7 @@ std::vector<IntervalVerdict> expect_right(Input input, const std::string& strate
   Answerer answerer(input, strategy_named(strategy), elementary_test_named("filtered_exact"), {});
   std::vector<IntervalVerdict> verdicts;
   for (std::size_t i = 0; i < input.clip->interval_count(); ++i) {
-    const IntervalAnswer answer = answerer.answer(i);
+    const IntervalAnswer answer = answerer.answer(i, input.clip->load(i));
     verdicts.push_back(answer.verdict);
     const scenes::ClipInterval interval = input.clip->load(i);
     const auto close = within(input, interval.motion, input.thickness.length),
@@ -85,8 +85,8 @@ TEST(Close, IsTouchingAtThicknessZero) {
             (std::vector{kClear, kTouches, kCrosses}));
   Input input = thick_balls({0, -0.95, -1.2, -1.2}, "0");
   Answerer answerer(input, strategy_named("drvbc_fast_all"), elementary_test_named("filtered_exact"), {});
-  EXPECT_EQ(answerer.answer(0).verdict, kClear);
-  const IntervalAnswer touches = answerer.answer(1);
+  EXPECT_EQ(answerer.answer(0, input.clip->load(0)).verdict, kClear);
+  const IntervalAnswer touches = answerer.answer(1, input.clip->load(1));
   EXPECT_EQ(touches.verdict, kTouches);
   EXPECT_TRUE(touches.touching.empty()) << "contacts say it";
 }

@@ -101,7 +101,7 @@ void expect_right(Input& input, const IgnoreRequest& request, const Strategy& st
         input.mesh,
         tell_meetings_apart(input.mesh, input.rest(), looked.find_all(input.rest(), kAllCrossings)).crossing};
   for (std::size_t i = 0; i < input.clip->interval_count(); ++i) {
-    const IntervalAnswer answer = answerer.answer(i);
+    const IntervalAnswer answer = answerer.answer(i, input.clip->load(i));
     const scenes::ClipInterval interval = input.clip->load(i);
     Crossings start = looked.find_all(interval.motion.start(), kAllCrossings);
     EXPECT_EQ(answer.starts_embedded, start.total == 0) << i;
@@ -110,7 +110,9 @@ void expect_right(Input& input, const IgnoreRequest& request, const Strategy& st
         std::erase_if(start.pairs, [&](const CrossingPair& pair) { return oracle.ignores(pair); });
     EXPECT_EQ(answer.ignored_pairs.size(), ignored_pairs) << i;
     std::erase_if(start.pairs, [&](const CrossingPair& pair) { return rest.explains(pair); });
-    ASSERT_EQ(answer.start.pairs, start.pairs) << i;
+    const Meetings met = tell_meetings_apart(input.mesh, interval.motion.start(), start);
+    ASSERT_EQ(answer.start.pairs, met.crossing.pairs) << i;
+    ASSERT_EQ(answer.start_touching.pairs, met.touching.pairs) << i;
 
     ContactSet all, ignored, kept;
     reference->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, all);

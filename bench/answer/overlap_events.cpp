@@ -239,26 +239,21 @@ void OverlapEvents::assign_contacts(Here& here, const IntervalAnswer& answer) {
   }
 }
 
-void keep_new(IntervalAnswer& answer, const OverlapEvents::Here& here, bool is_thick) {
-  for (Crossings* const pairs : {&answer.start, &answer.start_touching}) {
-    const std::size_t old = std::erase_if(pairs->pairs, [&](const CrossingPair& pair) {
-      return here.pieces.find(pair.first, pair.second) != OverlapEvents::kNone;
+void keep_new(const Input& input, const OverlapPieces& pieces, IntervalAnswer& answer) {
+  for (Crossings* const met : {&answer.start, &answer.start_touching}) {
+    const std::size_t old = std::erase_if(met->pairs, [&](const CrossingPair& pair) {
+      return pieces.find(pair.first, pair.second) != OverlapEvents::kNone;
     });
-    pairs->total -= old;
+    met->total -= old;
     answer.old_pairs += old;
   }
-  std::vector<cscd::Contact> left;
-  for (std::size_t i = 0; i < answer.found.contacts.size(); ++i) {
-    const cscd::Contact& contact = answer.found.contacts[i];
-    if (here.event_of_contact[i] == OverlapEvents::kNone)
-      left.push_back(contact);
-    else
-      answer.touching.erase(contact.pair);
-  }
-  answer.old_contacts = answer.found.contacts.size() - left.size();
-  answer.found.contacts = std::move(left);
+  answer.old_contacts = std::erase_if(answer.found.contacts, [&](const cscd::Contact& contact) {
+    if (pieces.find(input.mesh, contact.pair) == OverlapEvents::kNone) return false;
+    answer.touching.erase(contact.pair);
+    return true;
+  });
   answer.event_of_contact.clear();
-  answer.verdict = verdict_of(answer, is_thick);
+  answer.verdict = verdict_of(answer, input.thickness.length > 0);
 }
 
 std::vector<std::size_t> deepest_first(std::span<const OverlapEvent> events) {

@@ -109,8 +109,8 @@ class OverlapEvents {
   std::size_t not_measured_ = 0;
 };
 
-// Leaves out of an answer what lies within events: contacts, and pairs that cross at the start. `here` is
-// what OverlapEvents::add() said of the answer.
-void keep_new(IntervalAnswer& answer, const OverlapEvents::Here& here, bool is_thick);
+// Leaves out of an answer what lies within events: contacts, and pairs that meet at the start. `pieces` are
+// those that lie in each other there.
+void keep_new(const Input& input, const OverlapPieces& pieces, IntervalAnswer& answer);
 
 }  // namespace cscd::bench

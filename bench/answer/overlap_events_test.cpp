@@ -26,7 +26,7 @@ std::vector<OverlapEvent> events_of(Input& input, std::size_t& contacts_within, 
   OverlapEvents events(input, names, answerer);
   contacts_within = 0;
   for (std::size_t i = 0; i < input.clip->interval_count(); ++i) {
-    IntervalAnswer answer = answerer.answer(i);
+    IntervalAnswer answer = answerer.answer(i, input.clip->load(i));
     const OverlapEvents::Here here = events.add(answer, input.clip->load(i).motion.start(), {});
     EXPECT_EQ(here.event_of_contact.size(), answer.found.contacts.size());
     for (const std::size_t event : here.event_of_contact) contacts_within += event != OverlapEvents::kNone;

@@ -73,7 +73,7 @@ void expect_starts_right(const Strategy& strategy, const ElementaryTest& element
   EmbeddingTest from_nothing(input.mesh, input.reference);
   for (const std::size_t i : {0, 1, 2, 3, 4, 5, 6, 0, 3, 1, 6, 2, 5, 4, 0}) {
     const Crossings expected = from_nothing.find_all(input.clip->load(i).motion.start(), kNoLimit);
-    const IntervalAnswer answer = answerer.answer(i);
+    const IntervalAnswer answer = answerer.answer(i, input.clip->load(i));
     ASSERT_EQ(answer.start.pairs, expected.pairs) << i;
     EXPECT_EQ(answer.starts_embedded, expected.total == 0) << i;
   }
@@ -149,7 +149,7 @@ TEST(KnownStarts, AreNotTakenForEmbeddedInTheStepAfterOneWithContacts) {
   std::vector<bool> told;
   for (std::size_t i = 0; i < 5; ++i) {
     Trusting::told = 0;
-    const IntervalAnswer answer = answerer.answer(i);
+    const IntervalAnswer answer = answerer.answer(i, input.clip->load(i));
     EXPECT_TRUE(answer.starts_embedded) << i;
     EXPECT_EQ(answer.found.contacts.empty(), i != 1) << i;
     told.push_back(Trusting::told > 0);
@@ -193,7 +193,7 @@ TEST(KnownStarts, AreFollowedToWhereSignsPay) {
     EXPECT_EQ(Looking::asked, 1);
     EmbeddingTest from_nothing(input.mesh, input.reference);
     for (const std::size_t i : {0, 2, 4, 1, 5, 3})
-      EXPECT_EQ(answerer.answer(i).start.pairs,
+      EXPECT_EQ(answerer.answer(i, input.clip->load(i)).start.pairs,
                 from_nothing.find_all(input.clip->load(i).motion.start(), kNoLimit).pairs)
           << i;
     // On the ways to two of these starts the balls touch.

@@ -50,7 +50,6 @@ struct Input {
   bool clip_was_named = true;                 // else it is the first clip that moves
   bool is_one_pose = false;                   // of a model file that nothing moves: both frames are this pose
   int threads = 1;                            // for whatever can use them
-  bool use_bones = true;                      // for strategies that can do without
   std::vector<std::byte> preparation = {};    // of an earlier run; empty for none
   std::vector<std::string> bone_names = {};   // [bones], of a scene or a model file that names them, or none
   std::vector<std::string> cloth_names = {};  // of the last components, which no bone carries
@@ -74,8 +73,8 @@ struct Input {
 
   StrategyInput setup(const ElementaryTest& elementary, bool first_only = false,
                       Pipeline pipeline = Pipeline::vectorised) const {
-    return {mesh,       reference,  rig && use_bones ? &*rig : nullptr, elementary,
-            threads,    first_only, thickness.left_out.get(),           pipeline,
+    return {mesh,       reference,  rig ? &*rig : nullptr,    elementary,
+            threads,    first_only, thickness.left_out.get(), pipeline,
             preparation};
   }
 };

@@ -1,7 +1,8 @@
 #include <CLI/App.hpp>
 #include <cstdio>
 
-#include "bench/answer/options/model_options.h"
+#include "bench/answer/clip_answerer.h"
+#include "bench/answer/options/answer_options.h"
 #include "bench/command_line/command.h"
 #include "bench/inputs/input.h"
 #include "bench/output/output.h"
@@ -9,7 +10,6 @@
 #include "bench/query/export_files.h"
 #include "core/base/error.h"
 #include "scenes/base/output_target.h"
-#include "scenes/clip/point_cache.h"
 #include "scenes/export/glb.h"
 #include "scenes/export/skinned_scene.h"
 
@@ -19,10 +19,10 @@ namespace {
 constexpr std::string_view kFormats[] = {".h5",  ".hdf5", ".glb", ".pc2", ".mdd",
                                          ".obj", ".ply",  ".pvd", ".usda"};
 
-struct ExportOptions {
-  std::string input, output;
+struct ExportOptions : AnswerRequest {
+  std::string output;
   bool force = false, bake = false, events = false;
-  ModelOptions model;
+  std::string answer_option;  // one that was given, and that nothing but an answer goes by; empty for none
 };
 
 // Writes a scene as a skinned, animated model in glTF's binary form and says on standard output what it
@@ -54,44 +54,46 @@ void export_glb(const std::string& input, const ModelOptions& options, const std
               character.parts[0].positions.size(), character.parts[0].triangles.size());
 }
 
-void export_frames(const ExportOptions& options) {
+void export_input(const ExportOptions& options) {
   // An output that cannot be written is refused before the work, not after it.
   const std::string format = require_format(options.output, kFormats);
   if (options.bake && format != ".glb")
     throw InputError("--bake: is for .glb files; " + format +
                      " holds positions in any case, so leave it out");
+  const bool has_answers = options.events || format == ".pvd" || format == ".usda";
   if (options.events && format != ".ply")
     throw InputError("--events: is for .ply files; " +
                      std::string(format == ".pvd" || format == ".usda"
                                      ? format + " holds depths and curves in any case, so leave it out"
                                      : "write .ply, or .pvd or .usda, which hold depths and curves anyway"));
+  if (!has_answers && !options.answer_option.empty())
+    throw InputError(options.answer_option + ": is about contacts, which " + format +
+                     " does not hold; leave it out, or write .pvd, .usda, or .ply with --events");
   const bool sequence = format == ".obj" || format == ".ply";  // whose files have other names
   const std::filesystem::path target = file_target(options.output, options.force || sequence);
   if (format == ".glb" && !options.bake) {
+    if (!options.frames.empty())
+      throw InputError("--frames " + options.frames +
+                       ": a scene with its bones is written whole; add --bake");
     export_glb(options.input, options.model, options.output, options.force);
     return;
   }
+  require_sound(options);
   if (!sequence) const UnfinishedFile can_be_made(target, options.force);
   Input input = open_input(options.input, options.model);
   say_what_was_read(input, stdout);
-  if (format != ".h5" && format != ".hdf5") {
-    if (input.clip->header().predicted)
-      std::fprintf(
-          stderr,
-          "note: intervals of %s end at a simulator's predictions, which .h5 alone keeps: what touches "
-          "on the way there need not touch from frame to frame\n",
-          options.input.c_str());
-    export_files(input, options.output, format, options.force, options.events);
-    return;
+  if (input.clip->header().predicted && format != ".h5" && format != ".hdf5")
+    std::fprintf(
+        stderr,
+        "note: intervals of %s end at a simulator's predictions, which .h5 alone keeps: what touches "
+        "on the way there need not touch from frame to frame\n",
+        options.input.c_str());
+  if (has_answers) {
+    ClipAnswerer asked(options, std::move(input));
+    export_answers(asked, options.output, format, options.force);
+  } else {
+    export_frames(input, parse_frames(options.frames, input), options.output, format, options.force);
   }
-  note_renumbered(input);
-  scenes::ClipHeader header = input.clip->header();
-  if (!input.up.because.empty()) header.up = input.up.axis;
-  scenes::PointCacheWriter writer(options.output, std::move(header), options.force);
-  scenes::copy_frames(*input.clip, writer);
-  writer.finish();
-  std::printf("%s: %zu frames of %zu vertices and %zu triangles\n", options.output.c_str(),
-              input.clip->frame_count(), input.mesh.vertex_count(), input.mesh.triangle_count());
 }
 
 }  // namespace
@@ -116,7 +118,7 @@ void add_export(CLI::App& app) {
                          "  cscd export rope rope.usda          points over time, coloured by "
                          "what touches, with contacts\n"
                          "  cscd export character.glb walk.h5 --clip walk --fps 60");
-  command->add_option("input", options->input, kInputHelp)->required();
+  add_answer_options(*command, *options);
   command->add_option("output", options->output, "the file to write; its extension names the format")
       ->required();
   command->add_flag("--bake", options->bake, "a .glb of positions alone, as morph targets, from any input");
@@ -124,8 +126,10 @@ void add_export(CLI::App& app) {
                     "a .ply with how deep each vertex lies in another piece, as quality and colour, and "
                     "NAME.curves.0000.obj with the curves in which the surface crosses itself");
   command->add_flag("--force", options->force, "replace the output if it exists");
-  add_model_options(*command, options->model);
-  command->callback([options] { export_frames(*options); });
+  command->callback([options, command] {
+    options->answer_option = given_answer_option(*command);
+    export_input(*options);
+  });
 }
 
 }  // namespace cscd::bench

@@ -7,16 +7,15 @@
 #include <map>
 #include <vector>
 
-#include "bench/answer/answer.h"
-#include "bench/answer/overlap_events.h"
+#include "bench/answer/answer_text.h"
 #include "bench/output/output.h"
-#include "bench/output/progress.h"
-#include "bench/strategies/catalogue.h"
-#include "bench/strategies/strategy_row.h"
+#include "bench/query/view/strategy_observers.h"
 #include "core/base/error.h"
 #include "core/detect/contact_geometry.h"
 #include "core/detect/start/crossings.h"
 #include "scenes/base/output_target.h"
+#include "scenes/clip/clip_part.h"
+#include "scenes/clip/point_cache.h"
 #include "scenes/exchange/mesh_cache.h"
 #include "scenes/exchange/surface_file.h"
 #include "scenes/exchange/usd_file.h"
@@ -39,11 +38,22 @@ double file_number(const Input& input, std::size_t frame) {
   return (std::abs(number - whole) < 1e-3 ? whole : number) - before;
 }
 
+std::size_t count(const IntervalRange& range) {
+  return range.last - range.first + 1;  // of frames
+}
+
+// Says that files count their frames from 0 where the first of them has another number.
+void note_renumbered(const Input& input, const IntervalRange& range) {
+  if (const double first = file_number(input, range.first); first != 0)
+    std::printf("note: the first frame of %s has the number %.6g, and the files count from 0\n",
+                input.name.c_str(), first);
+}
+
 // The number in the name of the first file of a sequence, below 0 where that of the frame is.
-std::int64_t first_in_names(const Input& input) {
-  const double first = file_number(input, 0);
+std::int64_t first_in_names(const Input& input, const IntervalRange& range) {
+  const double first = file_number(input, range.first);
   if (first == std::floor(first)) return static_cast<std::int64_t>(first);
-  note_renumbered(input);
+  note_renumbered(input, range);
   return 0;
 }
 
@@ -93,35 +103,63 @@ double metres_per_unit(const Input& input) {
   return centimetres > 0 ? centimetres / 100 : 1;
 }
 
-void export_sequence(Input& input, const fs::path& output, const std::string& format, bool force) {
-  const std::size_t frames = input.clip->frame_count();
+void export_sequence(const Input& input, const IntervalRange& range, const fs::path& output,
+                     const std::string& format, bool force) {
+  const std::size_t frames = count(range);
   Files files(force);
-  files.add_sequence(output, first_in_names(input), frames, format);
+  files.add_sequence(output, first_in_names(input, range), frames, format);
   for (std::size_t f = 0; f < frames; ++f) {
-    const std::span<const Vec3> positions = input.clip->load_frame(f).positions;
+    const std::span<const Vec3> positions = input.clip->load_frame(range.first + f).positions;
     files.write(f, format == ".obj" ? scenes::to_obj(positions, input.mesh.triangles())
                                     : scenes::to_ply(positions, input.mesh.triangles()));
   }
   std::printf("%s to %s", files.name(0).c_str(), files.name(frames - 1).c_str());
 }
 
-void export_mesh_cache(Input& input, const fs::path& output, const std::string& format, bool force) {
+void export_mesh_cache(const Input& input, const IntervalRange& range, const fs::path& output,
+                       const std::string& format, bool force) {
   const auto kind = format == ".pc2" ? scenes::MeshCacheFormat::pc2 : scenes::MeshCacheFormat::mdd;
-  const std::size_t frames = input.clip->frame_count();
   Files files(force);
   const std::size_t cache = files.add(output), faces = files.add(fs::path(output).replace_extension(".obj"));
-  std::string bytes =
-      scenes::mesh_cache_head(kind, input.mesh.vertex_count(), frames, fps_of(input), file_number(input, 0));
-  for (std::size_t f = 0; f < frames; ++f)
+  std::string bytes = scenes::mesh_cache_head(kind, input.mesh.vertex_count(), count(range), fps_of(input),
+                                              file_number(input, range.first));
+  for (std::size_t f = range.first; f <= range.last; ++f)
     bytes += scenes::mesh_cache_frame(kind, input.clip->load_frame(f).positions);
   files.write(faces, scenes::to_obj(input.reference, input.mesh.triangles()));
   files.write(cache, bytes);
   std::printf("%s, faces in %s", output.string().c_str(), files.name(faces).c_str());
 }
 
-// What is known of one interval. [triangles] each, [contacts], and [curves].
-struct IntervalMarks {
-  std::vector<float> touches, crosses;
+void export_point_cache(const Input& input, const IntervalRange& range, const fs::path& output, bool force) {
+  note_renumbered(input, range);
+  scenes::ClipHeader header = input.clip->header();
+  if (!input.up.because.empty()) header.up = input.up.axis;
+  if (range.first > 0) header.rest.assign(input.rest().begin(), input.rest().end());
+  scenes::PointCacheWriter writer(output, std::move(header), force);
+  scenes::ClipPart part(*input.clip, range.first, range.last);
+  scenes::copy_frames(part, writer);
+  writer.finish();
+  std::printf("%s", output.string().c_str());
+}
+
+void export_baked(const Input& input, const IntervalRange& range, const fs::path& output, bool force) {
+  const double first = file_number(input, range.first);
+  if (first < 0) note_renumbered(input, range);  // glTF has no time before 0
+  OutputFile file(output, force, ".glb");
+  scenes::ClipPart part(*input.clip, range.first, range.last);
+  file.commit(scenes::baked_glb(part, output.stem().string(), fps_of(input), std::max(first, 0.0),
+                                input.up.axis, metres_per_unit(input)));
+  std::printf("%s", output.string().c_str());
+}
+
+void print_counts(const Input& input, const IntervalRange& range) {
+  std::printf(": %zu frames of %zu vertices and %zu triangles\n", count(range), input.mesh.vertex_count(),
+              input.mesh.triangle_count());
+}
+
+// What is known of a pose and of the interval that starts there. [triangles] each, [contacts], and [curves].
+struct PoseMarks {
+  std::vector<float> touches, close, crosses;  // close: within the thickness, and does not touch
   std::vector<float> depth;  // [vertices], in another piece of the surface at the start; 0 in none
   std::vector<std::vector<Vec3>> curves;  // of events; the first point of a closed one comes last, too
   std::vector<float> event;
@@ -137,48 +175,37 @@ scenes::Rgb colour_of_depth(float depth, float deepest) {
   return {230, static_cast<std::uint8_t>(200.0F - 200.0F * std::min(depth / deepest, 1.0F)), 20};
 }
 
-// Answers the intervals of an input as cscd query does by default.
+// Makes marks of the first strategy's answers.
 class Marker {
  public:
-  explicit Marker(Input& input)
-      : input_(input),
-        strategy_(default_strategy(input, false)),
-        elementary_(elementary_test_named("filtered_exact")),
-        answerer_(prepared_input(input, strategy_), strategy_, elementary_, {}),
-        names_(input),
-        events_(input, names_, answerer_),
-        observer_(strategy_.make(input.setup(elementary_))) {}
+  explicit Marker(const ClipAnswerer& asked) : input_(asked.input()), observers_(asked.answers().front()) {}
 
-  // Marks what is known of the interval that begins at a frame, or of the last frame, which begins none.
-  IntervalMarks mark(std::size_t frame) {
-    IntervalMarks marks;
-    marks.touches.resize(input_.mesh.triangle_count());
-    marks.crosses.resize(input_.mesh.triangle_count());
-    if (frame < input_.clip->interval_count()) {
-      IntervalAnswer answer = answerer_.answer(frame);
-      const scenes::ClipInterval moving = input_.clip->load(frame);
-      add_start(answer, moving.motion.start(), marks);
-      add_contacts(answer, moving.motion, marks);
-      add_clusters(moving, marks);
-    } else {
-      IntervalAnswer answer = answerer_.pose(frame);
-      add_start(answer, input_.clip->load_frame(frame).positions, marks);
-    }
+  PoseMarks mark(const AnsweredPose& pose) {
+    PoseMarks marks;
+    for (std::vector<float>* of_triangles : {&marks.touches, &marks.close, &marks.crosses})
+      of_triangles->resize(input_.mesh.triangle_count());
+    for (const CrossingPair& pair : pose.crossing.pairs) mark_both(pair, marks.crosses);
+    add_overlaps(pose.here, pose.interval.motion.start(), marks);
+    if (pose.is_last()) return marks;
+    add_contacts(pose.answers.front(), pose.interval.motion, marks);
+    add_clusters(pose.interval, marks);
     return marks;
   }
 
  private:
-  void add_start(IntervalAnswer& answer, std::span<const Vec3> start, IntervalMarks& marks) {
-    add_overlaps(events_.add(answer, start, {.ways = true}), start, marks);
-    for (const CrossingPair& pair : answer.start.pairs)
-      marks.crosses[+pair.first] = marks.crosses[+pair.second] = 1;
+  static void mark_both(const CrossingPair& pair, std::vector<float>& marks) {
+    marks[+pair.first] = marks[+pair.second] = 1;
   }
 
-  void add_contacts(const IntervalAnswer& answer, const Motion& motion, IntervalMarks& marks) const {
+  void add_contacts(const IntervalAnswer& answer, const Motion& motion, PoseMarks& marks) const {
+    const bool is_thick = input_.thickness.length > 0;
+    if (answer.motion && answer.motion->verdict == TrueVerdict::touches)
+      mark_both(*answer.motion->pair, marks.touches);
     for (const Contact& contact : answer.found.contacts) {
       if (contact.verdict != Verdict::contact) continue;
-      for (const auto& [first, second] : carriers(input_.mesh, contact.pair))
-        marks.touches[+first] = marks.touches[+second] = 1;
+      const bool touches = !is_thick || answer.touching.contains(contact.pair);
+      for (const CrossingPair& pair : carriers(input_.mesh, contact.pair))
+        mark_both(pair, touches ? marks.touches : marks.close);
       const ContactGeometry geometry = contact_geometry(input_.mesh, motion, contact.pair, contact.time);
       marks.points.push_back(geometry.point);
       marks.time.push_back(static_cast<float>(contact.time));
@@ -188,11 +215,9 @@ class Marker {
     }
   }
 
-  void add_clusters(const scenes::ClipInterval& moving, IntervalMarks& marks) {
-    ContactSet ignored;
-    observer_.detector->detect({moving.motion, moving.bones && input_.use_bones ? &*moving.bones : nullptr},
-                               ignored);
-    const RadialView view = observer_.detector->radial_view();
+  void add_clusters(const scenes::ClipInterval& interval, PoseMarks& marks) {
+    observers_.look(interval);
+    const RadialView view = observers_.view();
     marks.cluster.assign(view.cluster.begin(), view.cluster.end());
     marks.positive.assign(view.positive.begin(), view.positive.end());
     marks.patch.assign(view.patch.begin(), view.patch.end());
@@ -204,8 +229,7 @@ class Marker {
         covers[c]->assign(input_.mesh.triangle_count(), -1.0F);
   }
 
-  void add_overlaps(const OverlapEvents::Here& here, std::span<const Vec3> start,
-                    IntervalMarks& marks) const {
+  void add_overlaps(const OverlapEvents::Here& here, std::span<const Vec3> start, PoseMarks& marks) const {
     marks.depth.resize(input_.mesh.vertex_count());
     for (std::size_t i = 0; i < here.event.size(); ++i) {
       if (here.event[i] == OverlapEvents::kNone) continue;
@@ -226,43 +250,35 @@ class Marker {
     }
   }
 
-  static Input& prepared_input(Input& input, const Strategy& strategy) {
-    input.use_bones = gets_bones(strategy, input.clip->interval_count());
-    return input;
-  }
-  Input& input_;
-  const Strategy& strategy_;
-  const ElementaryTest& elementary_;
-  Answerer answerer_;
-  SurfaceNames names_;
-  OverlapEvents events_;
-  Prepared observer_;
+  const Input& input_;
+  StrategyObservers observers_;
 };
 
 // A surface with depths for each frame, and NAME.curves.0000.obj beside it with the curves.
-void export_events(Input& input, const fs::path& output, bool force) {
-  const std::size_t frames = input.clip->frame_count();
+void export_events(ClipAnswerer& asked, const fs::path& output, bool force) {
+  const Input& input = asked.input();
+  const IntervalRange& range = asked.range();
+  const std::size_t frames = count(range);
   Files files(force);
-  const std::int64_t first = first_in_names(input);
+  const std::int64_t first = first_in_names(input, range);
   files.add_sequence(output, first, frames, ".ply");
   const fs::path curves = output.parent_path() / (output.stem().string() + ".curves.obj");
   files.add_sequence(curves, first, frames, ".obj");
 
-  Marker marker(input);
-  Progress progress("export " + output.string(), frames);
+  Marker marker(asked);
   std::vector<std::map<std::size_t, float>> deep(frames);  // few vertices lie inside another piece
   float deepest = 0;
-  for (std::size_t f = 0; f < frames; ++f) {
-    const IntervalMarks marks = marker.mark(f);
+  asked.answer_all("export " + output.string(), true, [&](const AnsweredPose& pose) {
+    const PoseMarks marks = marker.mark(pose);
+    const std::size_t f = pose.frame - range.first;
     for (std::size_t v = 0; v < marks.depth.size(); ++v)
       if (marks.depth[v] > 0) deepest = std::max(deepest, deep[f][v] = marks.depth[v]);
-    files.write(frames + f, scenes::curves_to_obj(marks.curves, std::vector<std::size_t>(marks.event.begin(),
-                                                                                         marks.event.end())));
-    progress.advance();
-  }
+    const std::vector<std::size_t> events(marks.event.begin(), marks.event.end());
+    files.write(frames + f, scenes::curves_to_obj(marks.curves, events));
+  });
   // One scale of colours for all frames, so their deepest vertex has to be known before the first is written.
   for (std::size_t f = 0; f < frames; ++f) {
-    const std::span<const Vec3> positions = input.clip->load_frame(f).positions;
+    const std::span<const Vec3> positions = input.clip->load_frame(range.first + f).positions;
     std::vector<float> depth(positions.size());
     for (const auto& [vertex, value] : deep[f]) depth[vertex] = value;
     std::vector<scenes::Rgb> colours;
@@ -273,29 +289,32 @@ void export_events(Input& input, const fs::path& output, bool force) {
               files.name(frames - 1).c_str(), files.name(frames).c_str(), files.name(2 * frames - 1).c_str());
 }
 
-void export_paraview(Input& input, const fs::path& output, bool force) {
-  const std::size_t frames = input.clip->frame_count();
+void export_paraview(ClipAnswerer& asked, const fs::path& output, bool force) {
+  const Input& input = asked.input();
+  const IntervalRange& range = asked.range();
+  const std::size_t frames = count(range);
   Files files(force);
   const std::size_t list = files.add(output);
-  const std::int64_t first = first_in_names(input);
+  const std::int64_t first = first_in_names(input, range);
   files.add_sequence(output, first, frames, ".vtp");
   const fs::path contacts = output.parent_path() / (output.stem().string() + ".contacts.pvd");
   files.add_sequence(contacts, first, frames, ".vtp");
   const fs::path curves = output.parent_path() / (output.stem().string() + ".curves.pvd");
   files.add_sequence(curves, first, frames, ".vtp");
 
-  Marker marker(input);
+  Marker marker(asked);
   std::vector<scenes::VtkMoment> moments;
-  Progress progress("export " + output.string(), frames);
-  for (std::size_t f = 0; f < frames; ++f) {
-    const IntervalMarks marks = marker.mark(f);
-    scenes::VtkSurface surface(input.clip->load_frame(f).positions, input.mesh.triangles());
+  asked.answer_all("export " + output.string(), true, [&](const AnsweredPose& pose) {
+    const PoseMarks marks = marker.mark(pose);
+    const std::size_t f = pose.frame - range.first;
+    scenes::VtkSurface surface(pose.interval.motion.start(), input.mesh.triangles());
     // The last frame begins no interval; every file of a series has the same arrays all the same.
     const std::vector<float> zeros(input.mesh.triangle_count(), 0.0F);
     const auto cells = [&](const char* name, const std::vector<float>& values) {
       surface.add(name, values.empty() ? zeros : values);
     };
     cells("touches", marks.touches);
+    if (input.thickness.length > 0) cells("close", marks.close);
     cells("crosses_at_start", marks.crosses);
     cells("cluster", marks.cluster);
     cells("positive", marks.positive);
@@ -312,38 +331,35 @@ void export_paraview(Input& input, const fs::path& output, bool force) {
     files.write(1 + f, surface.text());
     files.write(1 + frames + f, points.text());
     files.write(1 + 2 * frames + f, lines.text());
-    const double time = file_number(input, f) / fps_of(input);
+    const double time = file_number(input, pose.frame) / fps_of(input);
     moments.push_back({time, 0, files.name(1 + f)});
     moments.push_back({time, 1, files.name(1 + frames + f)});
     moments.push_back({time, 2, files.name(1 + 2 * frames + f)});
-    progress.advance();
-  }
+  });
   files.write(list, scenes::to_pvd(moments));
   std::printf("%s, which lists %zu .vtp files", output.string().c_str(), files.count() - 1);
 }
 
-void export_usd(Input& input, const fs::path& output, bool force) {
+void export_usd(ClipAnswerer& asked, const fs::path& output, bool force) {
+  const Input& input = asked.input();
   OutputFile file(output, force, ".usda");
-  const std::size_t frames = input.clip->frame_count(), triangles = input.mesh.triangle_count();
   constexpr scenes::UsdSurface::Colour kPalette[] = {
-      {0.79F, 0.83F, 0.86F}, {0.90F, 0.62F, 0.0F}, {0.84F, 0.37F, 0.0F}};  // clear, touches, crosses
-  Marker marker(input);
+      {0.79F, 0.83F, 0.86F}, {0.94F, 0.89F, 0.26F}, {0.90F, 0.62F, 0.0F}, {0.84F, 0.37F, 0.0F}};
+  Marker marker(asked);
   scenes::UsdSurface surface(input.mesh.triangles(), {fps_of(input), input.up.axis, metres_per_unit(input)});
   Vec3 low = input.reference[0], high = low;
   for (const Vec3& x : input.reference) {
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
   }
-  Progress progress("export " + output.string(), frames);
-  for (std::size_t f = 0; f < frames; ++f) {
-    const IntervalMarks marks = marker.mark(f);
-    std::vector<std::uint8_t> colour(triangles, 0);
+  asked.answer_all("export " + output.string(), true, [&](const AnsweredPose& pose) {
+    const PoseMarks marks = marker.mark(pose);
+    std::vector<std::uint8_t> colour;  // clear, close, touches, crosses
     for (std::size_t t = 0; t < marks.touches.size(); ++t)
-      colour[t] = marks.crosses[t] > 0 ? 2 : marks.touches[t] > 0 ? 1 : 0;
-    surface.append(file_number(input, f), input.clip->load_frame(f).positions, colour, kPalette, marks.depth,
-                   marks.points, marks.curves);
-    progress.advance();
-  }
+      colour.push_back(marks.crosses[t] > 0 ? 3 : marks.touches[t] > 0 ? 2 : marks.close[t] > 0 ? 1 : 0);
+    surface.append(file_number(input, pose.frame), pose.interval.motion.start(), colour, kPalette,
+                   marks.depth, marks.points, marks.curves);
+  });
   file.commit(surface.text(0.004 * (high - low).norm()));
   std::printf("%s", output.string().c_str());
 }
@@ -358,33 +374,28 @@ fs::path file_target(const fs::path& output, bool force) {
   return target.path;
 }
 
-void note_renumbered(const Input& input) {
-  if (const double first = file_number(input, 0); first != 0)
-    std::printf("note: the first frame of %s has the number %.6g, and the files count from 0\n",
-                input.name.c_str(), first);
+void export_frames(const Input& input, const IntervalRange& range, const fs::path& output,
+                   const std::string& format, bool force) {
+  if (format == ".h5" || format == ".hdf5")
+    export_point_cache(input, range, output, force);
+  else if (format == ".obj" || format == ".ply")
+    export_sequence(input, range, output, format, force);
+  else if (format == ".pc2" || format == ".mdd")
+    export_mesh_cache(input, range, output, format, force);
+  else
+    export_baked(input, range, output, force);
+  print_counts(input, range);
 }
 
-void export_files(Input& input, const fs::path& output, const std::string& format, bool force, bool events) {
-  if (events) {
-    export_events(input, output, force);
-  } else if (format == ".obj" || format == ".ply") {
-    export_sequence(input, output, format, force);
-  } else if (format == ".pc2" || format == ".mdd") {
-    export_mesh_cache(input, output, format, force);
-  } else if (format == ".pvd") {
-    export_paraview(input, output, force);
-  } else if (format == ".usda") {
-    export_usd(input, output, force);
-  } else {
-    const double first = file_number(input, 0);
-    if (first < 0) note_renumbered(input);  // glTF has no time before 0
-    OutputFile file(output, force, ".glb");
-    file.commit(scenes::baked_glb(*input.clip, output.stem().string(), fps_of(input), std::max(first, 0.0),
-                                  input.up.axis, metres_per_unit(input)));
-    std::printf("%s", output.string().c_str());
-  }
-  std::printf(": %zu frames of %zu vertices and %zu triangles\n", input.clip->frame_count(),
-              input.mesh.vertex_count(), input.mesh.triangle_count());
+void export_answers(ClipAnswerer& asked, const fs::path& output, const std::string& format, bool force) {
+  if (format == ".ply")
+    export_events(asked, output, force);
+  else if (format == ".pvd")
+    export_paraview(asked, output, force);
+  else
+    export_usd(asked, output, force);
+  print_counts(asked.input(), asked.range());
+  std::printf("%s\n", verdict_sentence(asked.answers().front()).c_str());
 }
 
 }  // namespace cscd::bench

@@ -1,31 +1,25 @@
 #include <CLI/App.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
-#include <tuple>
 #include <vector>
 
-#include "bench/answer/answer.h"
 #include "bench/answer/answer_json.h"
+#include "bench/answer/clip_answerer.h"
 #include "bench/answer/options/answer_options.h"
-#include "bench/answer/surface_names.h"
-#include "bench/answer/true_answer.h"
 #include "bench/command_line/command.h"
 #include "bench/command_line/usage.h"
 #include "bench/inputs/input.h"
-#include "bench/inputs/thickness.h"
 #include "bench/output/output.h"
-#include "bench/output/progress.h"
 #include "bench/query/view/clip_recording.h"
 #include "bench/query/view/html.h"
 #include "bench/query/view/overlap_recording.h"
 #include "bench/query/view/recording.h"
 #include "bench/query/view_page.h"
 #include "bench/strategies/catalogue.h"
-#include "bench/strategies/strategy_row.h"
 #include "core/base/error.h"
 #include "scenes/clip/up_axis.h"
 
@@ -42,13 +36,6 @@ struct ViewOptions : ViewRequest {
   bool force = false;
 };
 
-std::vector<const Strategy*> chosen_strategies(const ViewRequest& options, const Input& input) {
-  if (options.strategies.empty()) return {&default_strategy(input, options.answers.first)};
-  std::vector<const Strategy*> chosen;
-  for (const std::string& name : options.strategies) chosen.push_back(&strategy_named(name));
-  return chosen;
-}
-
 // For every triangle the numbers of its bone, or else its part, and of its part.
 std::vector<std::uint16_t> places_of_triangles(const TriangleMesh& mesh, const SurfaceNames& names,
                                                TextTable& texts, bool parts) {
@@ -59,11 +46,6 @@ std::vector<std::uint16_t> places_of_triangles(const TriangleMesh& mesh, const S
   }
   return places;
 }
-
-struct Contestant {
-  Answerer answerer;
-  StrategyRecording recording;
-};
 
 // What the page has to know of an interval's true motion.
 json true_moment(const Input& input, const SurfaceNames& names, const IntervalAnswer& answer,
@@ -89,95 +71,54 @@ json true_moment(const Input& input, const SurfaceNames& names, const IntervalAn
 }
 
 // Answers one clip, adds its arrays to `sections`, and returns what a page has to know of it.
-json record_clip(ViewRequest options, Input input, Sections& sections) {
-  input.threads = options.threads;
-  // The one pose of a file is asked about as it is, whatever is left out of motions.
-  if (input.is_one_pose) options.answers.keep_rest_crossings = true;
-  ignore(input, options.ignored);
-  set_thickness(input, options.thickness);
-  const ElementaryTest& elementary = elementary_test_named(options.elementary);
-  const std::vector<const Strategy*> strategies = chosen_strategies(options, input);
-  const IntervalRange range = parse_frames(options.frames, input);
-  const SurfaceNames names(input);
+json record_clip(const ViewRequest& options, Input opened, Sections& sections) {
+  ClipAnswerer asked(options, std::move(opened));
+  const Input& input = asked.input();
+  const SurfaceNames& names = asked.names();
   TextTable texts;
   const std::vector<std::uint16_t> places = places_of_triangles(input.mesh, names, texts, false);
   const std::vector<std::uint16_t> parts = places_of_triangles(input.mesh, names, texts, true);
   sections.add("place", places);
   sections.add("part", parts);
 
-  Watchdog watchdog = watchdog_of(options, input);
-  ClipRecording clip(input, range);
-  std::vector<std::unique_ptr<Contestant>> contestants;
-  for (const Strategy* strategy : strategies) {
-    watchdog.restart();
-    input.use_bones = gets_bones(*strategy, input.clip->interval_count());
-    Answerer answerer(input, *strategy, elementary, options.answers);
-    ClipAnswer answer = prepared_answer(input, names, *strategy, elementary, options.answers, answerer);
-    contestants.emplace_back(
-        new Contestant{std::move(answerer), StrategyRecording(std::move(answer), clip.grid())});
-  }
-  std::optional<TrueAnswerer> true_motion;
-  if (input.motion)
-    true_motion.emplace(input, elementary, contestants.front()->answerer.rest_crossings(), options.answers,
-                        options.resolution);
-  json true_moments = json::array();
-  Answerer& first_answerer = contestants.front()->answerer;
-  OverlapEvents events(input, names, first_answerer);
+  ClipRecording clip(input, asked.range());
+  std::vector<StrategyRecording> recordings;
+  for (const ClipAnswer& answer : asked.answers()) recordings.emplace_back(answer, clip.grid());
   OverlapRecording overlaps;
-  input.use_bones = true;  // strategies that do without take no notice
-  {
-    Progress progress("view " + options.input, range.last - range.first);
-    for (std::size_t i = range.first; i < range.last; ++i) {
-      clip.add_frame(input.clip->load_frame(i));
-      bool touches = false;
-      std::optional<TrueAnswer> motion;  // the same beside all strategies
-      std::pair<Crossings, Crossings> start;
-      for (const auto& contestant : contestants) {
-        watchdog.restart();
-        IntervalAnswer answer = contestant->answerer.answer(i);
-        const scenes::ClipInterval loaded = input.clip->load(i);
-        // All strategies see the same starts.
-        if (contestant == contestants.front()) {
-          overlaps.add(events.add(answer, loaded.motion.start(), {.ways = true}), loaded.motion.start());
-          start = {answer.start, answer.start_touching};
-        } else {
-          std::tie(answer.start, answer.start_touching) = start;
-          answer.verdict = verdict_of(answer, input.thickness.length > 0);
-        }
-        if (true_motion && contestant == contestants.front()) {
-          true_motion->answer(loaded.motion, answer);
-          motion = answer.motion;
-          if (motion->verdict != TrueVerdict::clear || differs(answer))
-            true_moments.push_back(true_moment(input, names, answer, range.first));
-          if (motion->pair && differs(answer) && answer.found.contacts.empty())
-            clip.add_other_end(true_motion->positions_at(motion->parts_again ? motion->from : motion->to));
-        }
-        answer.motion = motion;
-        contestant->recording.add(answer, loaded, texts);
-        touches = touches || !answer.found.contacts.empty();
-      }
-      if (touches && input.clip->header().predicted) clip.add_other_end(input.clip->load(i).motion.end());
-      progress.advance();
-    }
-    clip.add_frame(input.clip->load_frame(range.last));
-  }
-  watchdog.restart();
-  const std::optional<IntervalAnswer> last = last_pose_of(input, range.last, first_answerer, events);
+  json true_moments = json::array();
+  const auto record_motion = [&](const IntervalAnswer& answer) {
+    const TrueAnswer& motion = *answer.motion;
+    if (motion.verdict != TrueVerdict::clear || differs(answer))
+      true_moments.push_back(true_moment(input, names, answer, asked.range().first));
+    if (motion.pair && differs(answer) && answer.found.contacts.empty())
+      clip.add_other_end(asked.true_positions_at(motion.parts_again ? motion.from : motion.to));
+  };
+  asked.answer_all("view " + options.input, true, [&](const AnsweredPose& pose) {
+    clip.add_frame(pose.interval);
+    if (pose.is_last()) return;
+    overlaps.add(pose.here, pose.interval.motion.start());
+    for (std::size_t s = 0; s < recordings.size(); ++s)
+      recordings[s].add(pose.answers[s], pose.interval, texts);
+    if (input.motion) record_motion(pose.answers.front());
+    const bool touches = std::ranges::any_of(
+        pose.answers, [](const IntervalAnswer& answer) { return !answer.found.contacts.empty(); });
+    if (touches && input.clip->header().predicted) clip.add_other_end(pose.interval.motion.end());
+  });
 
   overlaps.write(sections);
-  for (const auto& contestant : contestants) contestant->recording.take(last, events);
   const Up up = options.up.empty() ? input.up : Up{options.up, "--up says so"};
   json rows = json::array();
-  for (std::size_t s = 0; s < contestants.size(); ++s)
-    rows.push_back(contestants[s]->recording.write(sections, "s" + std::to_string(s) + "."));
+  for (std::size_t s = 0; s < recordings.size(); ++s)
+    rows.push_back(recordings[s].write(sections, "s" + std::to_string(s) + "."));
+  const ClipAnswer& first = asked.answers().front();
   json header = {{"up", {{"axis", up.axis}, {"because", up.because}}},
                  {"engine_colours", !options.strategies.empty()},
                  {"thickness", input.thickness.asked.thickness.text},
                  {"clip", clip.write(sections)},
                  {"texts", texts.texts()},
-                 {"events", event_lines(input, events.all())},
+                 {"events", event_lines(input, first.events)},
                  {"true_motion", input.motion ? std::move(true_moments) : json()},
-                 {"rest", rest_json(contestants.front()->recording.answer())},
+                 {"rest", rest_json(first)},
                  {"strategies", std::move(rows)}};
   if (input.import) header["import"] = import_json(*input.import);
   return header;
@@ -188,18 +129,15 @@ std::string text_of(const json& recorded) {
   return recorded["strategies"][0]["text"].get<std::string>();
 }
 
-// Adds every clip of a model file that is longer than one pose. Says the verdicts of the first clips alone:
-// the page tells the rest, and what is printed has to fit a screen.
+// Adds every clip of a model file. Says the verdicts of the first clips alone: the page tells the rest, and
+// what is printed has to fit a screen.
 void record_all_clips(const ViewRequest& options, json& header, Sections& sections) {
-  if (!options.frames.empty())
-    throw InputError("--frames " + options.frames + ": is for one clip; name one with --clip");
-  ViewRequest one = options;
-  one.model.import.clip.clear();
-  one.model.import.survey = true;
-  const Input survey = open_input(options.input, one.model);
-  one.model.import.survey = false;
+  ModelOptions model = options.model;
+  model.import.clip.clear();
+  model.import.survey = true;
+  Input survey = open_input(options.input, model);
   say_what_was_read(survey, stdout);
-  const std::vector<scenes::ImportReport::Clip>& clips = survey.import->clips;
+  const std::vector<scenes::ImportReport::Clip> clips = survey.import->clips;
   std::size_t frames = 0;
   for (const scenes::ImportReport::Clip& clip : clips) frames += clip.frames;
   require_page_room(frames, survey.mesh.vertex_count(),
@@ -210,26 +148,19 @@ void record_all_clips(const ViewRequest& options, json& header, Sections& sectio
   const auto say = [&](const std::string& line) {
     if (++said <= kMostVerdicts) std::printf("%s\n", line.c_str());
   };
-  for (std::size_t c = 0; c < clips.size(); ++c) {
-    if (clips[c].frames < 2 && !one.model.import.from_bind_pose) {
-      say("clip '" + clips[c].name + "' is one pose; passed over");
-      continue;
-    }
-    one.model.import.clip_number = c;
+  const auto take = [&](std::size_t c, Input input) {
     sections.set_prefix("c" + std::to_string(header["clips"].size()) + ".");
-    json recorded;
-    name_input(options.input,
-               [&] { recorded = record_clip(one, open_input(options.input, one.model), sections); });
+    json recorded = record_clip(options, std::move(input), sections);
     const std::string text = text_of(recorded);
     say(text.substr(0, text.find('\n')));
     recorded["title"] = clips[c].name.empty() ? "clip " + std::to_string(c) : clips[c].name;
     header["clips"].push_back(std::move(recorded));
-  }
+  };
+  for_each_clip(options, std::move(survey), take,
+                [&](std::size_t c) { say("clip '" + clips[c].name + "' is one pose; passed over"); });
   if (said > kMostVerdicts)
     std::printf("and %zu more clips; the page has them, and cscd query says how each ends\n",
                 said - kMostVerdicts);
-  if (header["clips"].empty())
-    throw InputError(options.input + ": has no clip of more than one pose, so nothing moves");
 }
 
 }  // namespace
@@ -237,7 +168,6 @@ void record_all_clips(const ViewRequest& options, json& header, Sections& sectio
 std::string view_page(ViewRequest options) {
   require_viewer();
   require_sound(options);
-  for (const std::string& name : options.strategies) require_fit(options.thickness, strategy_named(name));
   if (options.strategies.size() > kMostStrategies)
     throw InputError("--strategy: a page compares up to " + std::to_string(kMostStrategies) +
                      " strategies; name fewer");
@@ -287,14 +217,7 @@ void add_view(CLI::App& app) {
       "Answers are those of cscd query with the same options. Positions are rounded to 65535 steps across "
       "the\n"
       "clip's box for the page; the answers come from the exact ones.");
-  add_answer_options(*command, *options);
-  command->add_flag(
-      "--true-motion", options->model.true_motion,
-      "of a model file, show also where the paths on which keys and bones carry the surface touch");
-  add_resolution_option(*command, *options);
-  command->add_option("--strategy", options->strategies,
-                      "culling strategy (cscd list); several, each with its own --strategy, stand side by "
-                      "side;\nwithout it, the best that the input allows");
+  add_answer_options(*command, *options, true);
   command
       ->add_option("--up", options->up,
                    "the axis that points up, where the input does not say it or says it wrongly")

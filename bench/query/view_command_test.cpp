@@ -4,20 +4,13 @@
 #include <string>
 
 #include "bench/query/view/viewer_page.h"
-#include "bench/testing/test_generated.h"
-#include "bench/testing/test_shell.h"
+#include "bench/testing/test_queries.h"
 
 // cscd view from outside: the page that it writes, and what a browser makes of it.
 namespace cscd::bench {
 namespace {
 
 using nlohmann::json;
-
-json header_of(const std::string& page) {
-  const std::string begin = "id=\"header\">";
-  const std::size_t from = page.find(begin) + begin.size();
-  return json::parse(page.substr(from, page.find("</script>", from) - from));
-}
 
 constexpr char kHostile[] = "<img src=x onerror=alert(1)>";
 

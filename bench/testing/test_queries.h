@@ -9,6 +9,13 @@
 
 namespace cscd::bench {
 
+// What a page of the viewer knows of its input, apart from arrays.
+inline nlohmann::json header_of(const std::string& page) {
+  const std::string begin = "id=\"header\">";
+  const std::size_t from = page.find(begin) + begin.size();
+  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
+}
+
 // The program with a character to ask about, figure.glb.
 class QueryProgram : public Program {
  protected:

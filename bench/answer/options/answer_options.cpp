@@ -1,39 +1,76 @@
 #include "bench/answer/options/answer_options.h"
 
-#include <nlohmann/json.hpp>
-
-#include "bench/inputs/thickness.h"
-#include "bench/strategies/catalogue.h"
-#include "core/base/error.h"
+#include "bench/answer/options/model_options.h"
 
 namespace cscd::bench {
 namespace {
 
-// The seconds that one interval of a model file may take, unless the user sets a limit. Scenes and point
-// caches were made for this program and have no limit.
-constexpr double kModelIntervalSeconds = 60;
+constexpr char kAnswerGroup[] = "Answers";
+
+// An option that is a length; `take` gets it.
+template <class Take>
+void add_length(CLI::App& command, const std::string& name, const Take& take, const std::string& help) {
+  command
+      .add_option_function<std::string>(
+          name, [name, take](const std::string& text) { take(parse_length(name, text)); }, help)
+      ->type_name("R");
+}
 
 }  // namespace
 
-void add_answer_options(CLI::App& command, AnswerRequest& request) {
+void add_answer_options(CLI::App& command, AnswerRequest& request, bool several_strategies) {
   command.add_option("input", request.input, kInputHelp)->required();
+  command.add_option("--frames", request.frames, "A:B, the intervals between frames A and B; default all");
+  CLI::OptionDefaults& defaults = *command.option_defaults();
+  const std::string group_of_others = defaults.get_group();
+  defaults.group(kAnswerGroup);
+  CLI::Option* const strategy = command.add_option(
+      "--strategy", request.strategies,
+      several_strategies
+          ? "culling strategy (cscd list); several, each with its own --strategy, stand side by "
+            "side;\nwithout it, the best that the input allows"
+          : "culling strategy (cscd list); without it, the best that the input allows");
+  strategy->allow_extra_args(false);
+  if (!several_strategies) strategy->expected(1);
   command.add_option("--elementary", request.elementary, "elementary test (cscd list)")
       ->capture_default_str();
-  command.add_option("--frames", request.frames, "A:B, the intervals between frames A and B; default all");
   command.add_flag("--first", request.answers.first,
                    "only the contacts of the earliest time of each interval");
   command.add_flag("--unproven", request.answers.unproven,
                    "run the strategy even where its guarantee is void");
   command.add_flag("--keep-rest-crossings", request.answers.keep_rest_crossings,
                    "count pairs of triangles that cross at rest like all others");
+  command.add_flag(
+      "--new-contacts", request.new_contacts,
+      "leave out contacts and crossings of pieces that lie in each other when an interval starts: "
+      "only what touches anew counts");
+  add_ignore_options(command, request.ignored);
+  add_thickness_options(command, request.thickness);
+  command.add_flag(
+      "--true-motion", request.model.true_motion,
+      "of a model file, ask also about the paths on which keys and bones carry the surface between "
+      "frames,\nwith proof");
+  add_length(
+      command, "--resolution", [&request](const WrittenLength& length) { request.resolution = length; },
+      "with --true-motion, what comes this near is looked at until it is told whether it touches, or is too\n"
+      "close to tell; a length as for --thickness, default 0.01e. Less takes longer");
+  command.add_option(
+      "--preparation", request.preparation,
+      "file in which what preparing the surface finds out is kept: written if there is none, else read, "
+      "which takes a fraction of the time, also where the surface has changed in places since");
   command
       .add_option("--interval-seconds", request.interval_seconds,
                   "seconds after which an interval ends the program; default 60 for model files, else none")
       ->check(CLI::Range(0.01, 1e6));
-  add_ignore_options(command, request.ignored);
-  add_thickness_options(command, request.thickness);
   add_threads_option(command, request.threads);
+  defaults.group(group_of_others);
   add_model_options(command, request.model);
+}
+
+std::string given_answer_option(const CLI::App& command) {
+  for (const CLI::Option* option : command.get_options())
+    if (option->get_group() == kAnswerGroup && option->count() > 0) return option->get_name();
+  return {};
 }
 
 void add_ignore_options(CLI::App& command, IgnoreRequest& request) {
@@ -51,12 +88,9 @@ void add_ignore_options(CLI::App& command, IgnoreRequest& request) {
 }
 
 void add_thickness_option(CLI::App& command, ThicknessRequest& request) {
-  command
-      .add_option_function<std::string>(
-          "--thickness",
-          [&request](const std::string& text) { request.thickness = parse_length("--thickness", text); },
-          "what comes this near counts: a length such as 0.01, or 0.2e for mean edges of the pose at rest")
-      ->type_name("R");
+  add_length(
+      command, "--thickness", [&request](const WrittenLength& length) { request.thickness = length; },
+      "what comes this near counts: a length such as 0.01, or 0.2e for mean edges of the pose at rest");
 }
 
 void add_thickness_options(CLI::App& command, ThicknessRequest& request) {
@@ -67,46 +101,9 @@ void add_thickness_options(CLI::App& command, ThicknessRequest& request) {
           "vertices that at most so many edges join do not collide; a pair of features is left out if\n"
           "all its vertices are so near")
       ->check(CLI::Range(0, 1000));
-  command
-      .add_option_function<std::string>(
-          "--exclude-near-rest",
-          [&request](const std::string& text) {
-            request.near_rest = parse_length("--exclude-near-rest", text);
-          },
-          "nor do vertices that are nearer than this at rest; a length as for --thickness")
-      ->type_name("R");
-}
-
-void add_resolution_option(CLI::App& command, AnswerRequest& request) {
-  command
-      .add_option_function<std::string>(
-          "--resolution",
-          [&request](const std::string& text) { request.resolution = parse_length("--resolution", text); },
-          "with --true-motion, what comes this near is looked at until it is told whether it touches, or is "
-          "too\n"
-          "close to tell; a length as for --thickness, default 0.01e. Less takes longer")
-      ->type_name("R");
-}
-
-void require_sound(const AnswerRequest& request) {
-  if (request.resolution && !request.model.true_motion)
-    throw InputError("--resolution: is for --true-motion; leave it out, or add that");
-  if (request.resolution && request.resolution->number == 0)
-    throw InputError(
-        "--resolution 0: what only touches would be looked at without end; give a length above 0");
-  const ElementaryTest& elementary = elementary_test_named(request.elementary);
-  require_fit(request.thickness, elementary);
-  // With --first, the time up to which pairs are looked at has to be right.
-  if (request.answers.first && (!elementary.apart_is_proof || !elementary.contact_is_proof))
-    throw InputError("--first: elementary test '" + std::string(elementary.name) +
-                     "' may be wrong about what touches; choose filtered_exact or exact");
-}
-
-Watchdog watchdog_of(const AnswerRequest& request, const Input& input) {
-  const double patience = request.interval_seconds.value_or(input.import ? kModelIntervalSeconds : 0);
-  return Watchdog(patience, "cscd: " + request.input + ": an interval, or the preparation, took more than " +
-                                nlohmann::json(patience).dump() +
-                                " s; raise --interval-seconds to wait longer");
+  add_length(
+      command, "--exclude-near-rest", [&request](const WrittenLength& length) { request.near_rest = length; },
+      "nor do vertices that are nearer than this at rest; a length as for --thickness");
 }
 
 }  // namespace cscd::bench

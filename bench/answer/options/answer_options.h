@@ -1,31 +1,19 @@
 #pragma once
 
 #include <CLI/App.hpp>
-#include <optional>
 #include <string>
 
-#include "bench/answer/answer.h"
-#include "bench/answer/ignore.h"
-#include "bench/answer/options/model_options.h"
-#include "bench/inputs/thickness_request.h"
-#include "bench/inputs/watchdog.h"
+#include "bench/answer/answer_request.h"
 
 namespace cscd::bench {
 
-// What the commands that answer the intervals of an input have in common.
-struct AnswerRequest {
-  std::string input, elementary = "filtered_exact", frames;
-  AnswerOptions answers;
-  IgnoreRequest ignored;
-  ThicknessRequest thickness;
-  std::optional<double> interval_seconds;
-  std::optional<WrittenLength> resolution;  // with --true-motion
-  int threads = 1;
-  ModelOptions model;
-};
+// The input, and all options of a command that answers its intervals. `request` must live as long as the
+// command.
+void add_answer_options(CLI::App& command, AnswerRequest& request, bool several_strategies = false);
 
-// The input itself and these options. `request` must live as long as the command.
-void add_answer_options(CLI::App& command, AnswerRequest& request);
+// Returns one of these options that was given, and that only answers go by; empty for none. --frames, and how
+// a model file is read, matter to frames too.
+std::string given_answer_option(const CLI::App& command);
 
 // --ignore and --ignore-neighbours. `request` must live as long as the command.
 void add_ignore_options(CLI::App& command, IgnoreRequest& request);
@@ -34,14 +22,5 @@ void add_ignore_options(CLI::App& command, IgnoreRequest& request);
 void add_thickness_options(CLI::App& command, ThicknessRequest& request);
 // --thickness alone.
 void add_thickness_option(CLI::App& command, ThicknessRequest& request);
-
-// --resolution, of commands that take --true-motion. `request` must live as long as the command.
-void add_resolution_option(CLI::App& command, AnswerRequest& request);
-
-// Throws InputError where options do not go together.
-void require_sound(const AnswerRequest& request);
-
-// Ends the program if an interval takes longer than the request allows.
-Watchdog watchdog_of(const AnswerRequest& request, const Input& input);
 
 }  // namespace cscd::bench

@@ -26,7 +26,7 @@ void require_page_room(std::size_t frames, std::size_t vertices, const std::stri
                      " frames " + remedy);
 }
 
-ClipRecording::ClipRecording(Input& input, const IntervalRange& range) : input_(input), range_(range) {
+ClipRecording::ClipRecording(const Input& input, const IntervalRange& range) : input_(input), range_(range) {
   require_page_room(range.last - range.first + 1, input.mesh.vertex_count(), input.name + ": a page",
                     "with --frames A:B");
   for (std::size_t f = range.first; f <= range.last; ++f) {
@@ -35,9 +35,9 @@ ClipRecording::ClipRecording(Input& input, const IntervalRange& range) : input_(
   }
 }
 
-void ClipRecording::add_frame(const scenes::FrameView& frame) {
-  frames_.append(frame.positions);
-  for (const Bone& bone : frame.bones)
+void ClipRecording::add_frame(const scenes::ClipInterval& interval) {
+  frames_.append(interval.motion.start());
+  for (const Bone& bone : interval.bones ? interval.bones->start : std::span<const Bone>())
     for (const Vec3& x : {bone.head, bone.tail})
       for (int axis = 0; axis < 3; ++axis) bones_.push_back(static_cast<float>(x[axis]));
   ++added_;

@@ -22,12 +22,12 @@ class ClipRecording {
  public:
   // Reads all frames of the range once, for the size of the grid. Throws InputError if a page of so many
   // frames would be too large for a browser.
-  ClipRecording(Input& input, const IntervalRange& range);
+  ClipRecording(const Input& input, const IntervalRange& range);
 
   const ViewGrid& grid() const { return grid_; }
 
-  // Adds frames, in order: range.first to range.last.
-  void add_frame(const scenes::FrameView& frame);
+  // Adds the frame in which an interval starts; in order, range.first to range.last.
+  void add_frame(const scenes::ClipInterval& interval);
   // Adds another end of the interval that begins at the frame added last: the predicted one, or a pose within
   // the interval that the true motion goes through.
   void add_other_end(std::span<const Vec3> end);

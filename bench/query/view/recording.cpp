@@ -63,19 +63,15 @@ void ObserverRecording::write(Sections& sections, const std::string& prefix) con
   sections.add(prefix + "observer_place", place_);
 }
 
-StrategyRecording::StrategyRecording(ClipAnswer answer, const ViewGrid& grid)
-    : answer_(std::move(answer)),
-      prepared_(answer_.strategy.make(answer_.input.setup(answer_.elementary))),
-      grid_(grid) {
-  if (prepared_.preparation.atomic_clusters > std::numeric_limits<std::uint16_t>::max())
+StrategyRecording::StrategyRecording(const ClipAnswer& answer, const ViewGrid& grid)
+    : answer_(answer), strategy_observers_(answer), grid_(grid) {
+  if (strategy_observers_.preparation().atomic_clusters > std::numeric_limits<std::uint16_t>::max())
     throw InputError("strategy " + std::string(answer_.strategy.name) +
                      ": made more than 65535 clusters, more than a page shows; choose a --component");
 }
 
 void StrategyRecording::add(const IntervalAnswer& answer, const scenes::ClipInterval& interval,
                             TextTable& places) {
-  answer_.summary.add(answer, interval.motion, answer_.names);
-  answer_.true_motion.add(answer, answer_.names);
   const std::string by(answer.strategy->name);
   auto known = std::find(answered_by_.begin(), answered_by_.end(), by);
   if (known == answered_by_.end()) known = answered_by_.insert(known, by);
@@ -137,21 +133,17 @@ void StrategyRecording::add_contact(const Contact& contact, const Motion& motion
 }
 
 // Asks the observers. A cluster goes by the first of its atomic clusters, so that it keeps its number from
-// one interval to the next. A page has the same atomic clusters in every interval, so it shows those of a
-// strategy that follows the surface as preparation cut them.
+// one interval to the next.
 void StrategyRecording::add_view(const scenes::ClipInterval& interval) {
-  ContactSet ignored;
-  prepared_.detector->forget();
-  const Rig::Interval* bones = interval.bones && answer_.input.use_bones ? &*interval.bones : nullptr;
-  const Report report = prepared_.detector->detect(
-      {.motion = interval.motion, .bones = bones, .thickness = answer_.input.thickness.thickness()}, ignored);
-  const RadialView view = prepared_.detector->radial_view();
+  const Report report = strategy_observers_.look(interval);
+  const RadialView view = strategy_observers_.view();
   clusters_.push_back(report.cull.radial ? count(report.cull.radial->clusters) : 0);
 
   positive_.append(view.positive);
-  const std::vector<std::int32_t>& atomic = prepared_.preparation.atomic_cluster;
+  const Preparation& preparation = strategy_observers_.preparation();
+  const std::vector<std::int32_t>& atomic = preparation.atomic_cluster;
   std::map<std::int32_t, std::uint16_t> first;  // of the atomic clusters that have a label
-  std::vector<std::int32_t> label(static_cast<std::size_t>(prepared_.preparation.atomic_clusters), -1);
+  std::vector<std::int32_t> label(static_cast<std::size_t>(preparation.atomic_clusters), -1);
   for (std::size_t t = 0; t < atomic.size(); ++t) {
     std::int32_t& known = label[static_cast<std::size_t>(atomic[t])];
     if (known < 0) known = view.cluster[t];
@@ -195,9 +187,8 @@ json StrategyRecording::write(Sections& sections, const std::string& prefix) con
   put("touched", touched_.bytes());
   if (is_thick()) put("close", close_.bytes()), put("contact_touches", touches_);
   if (has_clusters()) {
-    std::vector<std::uint16_t> atomic(prepared_.preparation.atomic_cluster.begin(),
-                                      prepared_.preparation.atomic_cluster.end());
-    put("atomic", atomic);
+    const std::vector<std::int32_t>& atomic = strategy_observers_.preparation().atomic_cluster;
+    put("atomic", std::vector<std::uint16_t>(atomic.begin(), atomic.end()));
     put("cluster_of_atomic", cluster_of_atomic_);
     put("positive", positive_.bytes());
     put("clusters", clusters_);
@@ -211,7 +202,7 @@ json StrategyRecording::write(Sections& sections, const std::string& prefix) con
           {"guarantee", to_string(answer_.strategy.guarantee)},
           {"source", answer_.strategy.source},
           {"answered_by", answered_by_},
-          {"atomic_clusters", prepared_.preparation.atomic_clusters},
+          {"atomic_clusters", strategy_observers_.preparation().atomic_clusters},
           {"has_clusters", has_clusters()},
           {"covers", observers_.size()},
           {"has_patches", !patch_.empty()},

@@ -10,7 +10,7 @@
 #include "bench/answer/clip_answer.h"
 #include "bench/query/view/position_coder.h"
 #include "bench/query/view/sections.h"
-#include "core/detect/radial_view.h"
+#include "bench/query/view/strategy_observers.h"
 
 namespace cscd::bench {
 
@@ -64,19 +64,14 @@ class StrategyRecording {
   // how many there are in all.
   static constexpr std::size_t kMostContacts = 2000, kMostStartPairs = 4000;
 
-  // Prepares the strategy once more, to ask its observers: an Answerer may have another strategy answer.
-  // Observers are placed on `grid`, which must outlive the recording.
-  StrategyRecording(ClipAnswer answer, const ViewGrid& grid);
+  // Observers are placed on `grid`, which must outlive the recording, as `answer` must.
+  StrategyRecording(const ClipAnswer& answer, const ViewGrid& grid);
 
   void add(const IntervalAnswer& answer, const scenes::ClipInterval& interval, TextTable& places);
-  // See ClipAnswer::take().
-  void take(std::optional<IntervalAnswer> last, const OverlapEvents& events) {
-    answer_.take(std::move(last), events);
-  }
-  const ClipAnswer& answer() const { return answer_; }
-  bool has_clusters() const { return !prepared_.preparation.atomic_cluster.empty(); }
+  bool has_clusters() const { return !strategy_observers_.preparation().atomic_cluster.empty(); }
 
-  // Adds all arrays to `sections`, their names behind `prefix`, and returns what else the page has to know.
+  // Once all intervals are answered: adds all arrays to `sections`, their names behind `prefix`, and returns
+  // what else the page has to know.
   nlohmann::json write(Sections& sections, const std::string& prefix) const;
 
  private:
@@ -84,8 +79,8 @@ class StrategyRecording {
   bool is_thick() const { return answer_.input.thickness.length > 0; }
   void add_view(const scenes::ClipInterval& interval);
 
-  ClipAnswer answer_;
-  Prepared prepared_;
+  const ClipAnswer& answer_;
+  StrategyObservers strategy_observers_;
   const ViewGrid& grid_;
   std::vector<std::string> answered_by_;
 

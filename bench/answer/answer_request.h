@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/answer/answer.h"
+#include "bench/answer/ignore.h"
+#include "bench/inputs/import.h"
+#include "bench/inputs/thickness_request.h"
+
+namespace cscd::bench {
+
+// What a command that answers the intervals of an input is asked.
+struct AnswerRequest {
+  std::string input, elementary = "filtered_exact", frames;
+  std::vector<std::string> strategies;  // by name; none for the best that the input allows
+  AnswerOptions answers;
+  bool new_contacts = false;  // what lies within events when an interval starts is left out
+  IgnoreRequest ignored;
+  ThicknessRequest thickness;
+  std::optional<double> interval_seconds;
+  std::optional<WrittenLength> resolution;  // with --true-motion
+  std::string preparation;                  // the file in which it is kept; empty for none
+  int threads = 1;
+  ModelOptions model;
+};
+
+// Throws InputError where what is asked does not go together.
+void require_sound(const AnswerRequest& request);
+
+}  // namespace cscd::bench

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "bench/answer/clip_answer.h"
+#include "bench/strategies/strategy_row.h"
+#include "core/detect/radial_view.h"
+
+namespace cscd::bench {
+
+// Asks the observers of a strategy how they see the surface. The strategy is prepared once more for that,
+// because an Answerer may have another strategy answer.
+class StrategyObservers {
+ public:
+  // The input of the answer must outlive it.
+  explicit StrategyObservers(const ClipAnswer& answer)
+      : input_(answer.input),
+        prepared_(answer.strategy.make(
+            setup_for(answer.strategy, input_.setup(answer.elementary), input_.clip->interval_count()))) {}
+
+  const Preparation& preparation() const { return prepared_.preparation; }
+  // Shows them an interval. Clusters of a strategy that follows the surface are as preparation cut them, the
+  // same in every interval.
+  Report look(const scenes::ClipInterval& interval) {
+    ContactSet ignored;
+    prepared_.detector->forget();
+    return prepared_.detector->detect(input_.step(interval), ignored);
+  }
+  // How they saw that interval.
+  RadialView view() const { return prepared_.detector->radial_view(); }
+
+ private:
+  const Input& input_;
+  Prepared prepared_;
+};
+
+}  // namespace cscd::bench
