@@ -22,11 +22,9 @@
 
 namespace {
 
-constexpr int kBadUsage = 2;
-
 int complain(const std::string& text) {
   std::fprintf(stderr, "cscd: %s\n", text.c_str());
-  return kBadUsage;
+  return static_cast<int>(cscd::bench::ExitStatus::refused);
 }
 
 #ifdef CSCD_ALL_ISAS
@@ -98,7 +96,7 @@ int run(int argc, char** argv) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
     return complain(cscd::bench::usage_error(app, error));
   } catch (const cscd::bench::ExitStatus& status) {
-    return status.code;
+    return static_cast<int>(status);
   } catch (const cscd::bench::NobodyReads&) {
     cscd::bench::end_by_broken_pipe();
   } catch (const cscd::InputError& error) {

@@ -55,15 +55,29 @@ class CallersPaths final : public VertexPaths {
   std::size_t vertices_;
 };
 
-SelfCollision::PathsAnswer written(const TrueAnswer& answer) {
+// The library's header stands alone, so it has an enum of its own.
+SelfCollision::PathsAnswer::Verdict written(IntervalVerdict verdict) {
   using Verdict = SelfCollision::PathsAnswer::Verdict;
-  SelfCollision::PathsAnswer out{
-      static_cast<Verdict>(answer.verdict), answer.from, answer.to, answer.within, {-1, -1}};
+  switch (verdict) {
+    case IntervalVerdict::clear:
+      return Verdict::clear;
+    case IntervalVerdict::touches:
+      return Verdict::touches;
+    case IntervalVerdict::intersects_at_start:
+      return Verdict::intersects_at_start;
+    case IntervalVerdict::undecided:
+      break;
+    case IntervalVerdict::close:
+      return Verdict::close;
+  }
+  return Verdict::undecided;
+}
+
+SelfCollision::PathsAnswer written(const TrueAnswer& answer) {
+  SelfCollision::PathsAnswer out{written(answer.verdict), answer.from, answer.to, answer.within, {-1, -1}};
   if (answer.pair) out.faces = {static_cast<int>(answer.pair->first), static_cast<int>(answer.pair->second)};
   return out;
 }
-static_assert(static_cast<int>(TrueVerdict::undecided) ==
-              static_cast<int>(SelfCollision::PathsAnswer::Verdict::undecided));
 
 }  // namespace
 
@@ -80,7 +94,7 @@ SelfCollision::PathsAnswer answer_paths(const SelfCollision::Paths& paths, doubl
   if (resolution > 0) options.resolution = resolution;
   TrueMotion motion(callers, setup, kDrvbcFastComplete, options);
   if (const auto met = motion.meeting_at(from))
-    return written({.verdict = met->crosses ? TrueVerdict::intersects_at_start : TrueVerdict::touches,
+    return written({.verdict = met->crosses ? IntervalVerdict::intersects_at_start : IntervalVerdict::touches,
                     .from = from,
                     .to = from,
                     .pair = met->pair});

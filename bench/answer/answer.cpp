@@ -16,22 +16,6 @@ AnswerOptions as_input_says(AnswerOptions options, const Input& input) {
 
 }  // namespace
 
-std::string_view to_string(IntervalVerdict verdict) {
-  switch (verdict) {
-    case IntervalVerdict::clear:
-      return "clear";
-    case IntervalVerdict::touches:
-      return "touches";
-    case IntervalVerdict::intersects_at_start:
-      return "intersects_at_start";
-    case IntervalVerdict::undecided:
-      return "undecided";
-    case IntervalVerdict::close:
-      return "close";
-  }
-  return "";
-}
-
 IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick) {
   if (answer.start.total > 0) return IntervalVerdict::intersects_at_start;
   if (answer.start_touching.total > 0) return IntervalVerdict::touches;

@@ -3,24 +3,15 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "bench/inputs/input.h"
 #include "core/base/error.h"
 #include "core/base/memory.h"
+#include "core/session/interval_verdict.h"
 #include "core/session/session.h"
 #include "core/session/true_motion.h"
 
 namespace cscd::bench {
-
-enum class IntervalVerdict {
-  clear,                // nothing crosses at the start, and nothing touches
-  touches,              // nothing crosses at the start, and something touches, at the start or later
-  intersects_at_start,  // triangles cross at the start
-  undecided,  // nothing crosses, and an inexact elementary test could not tell whether something touches
-  close       // nothing crosses or touches, and something comes within the thickness
-};
-std::string_view to_string(IntervalVerdict verdict);
 
 // The answer to one interval of a clip.
 struct IntervalAnswer : StepAnswer {

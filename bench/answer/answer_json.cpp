@@ -270,10 +270,10 @@ json summary_json(const ClipAnswer& answer) {
       {"verdict", to_string(s.verdict())},
       {"sentence", verdict_sentence(answer)},
       {"intervals", s.intervals()},
-      {"clear", s.count(IntervalVerdict::clear)},
-      {"touches", s.count(IntervalVerdict::touches)},
-      {"intersects_at_start", s.count(IntervalVerdict::intersects_at_start)},
-      {"undecided", s.count(IntervalVerdict::undecided)},
+      {"clear", s.verdicts[IntervalVerdict::clear]},
+      {"touches", s.verdicts[IntervalVerdict::touches]},
+      {"intersects_at_start", s.verdicts[IntervalVerdict::intersects_at_start]},
+      {"undecided", s.verdicts[IntervalVerdict::undecided]},
       {"proven", s.proven},
       {"ms",
        {{"query", s.query_ms},
@@ -294,7 +294,7 @@ json summary_json(const ClipAnswer& answer) {
       {"with_ignored", s.with_ignored},
       {"ignored", std::move(ignored)}};
   if (answer.input.thickness.length > 0) {
-    out["close"] = s.count(IntervalVerdict::close);
+    out["close"] = s.verdicts[IntervalVerdict::close];
     out["close_at_start"] = s.close_at_start;
     out["with_close_at_start"] = s.with_close_at_start;
   }

@@ -42,7 +42,7 @@ TEST(SurfaceNames, NameClothAndNotTheBoneNearestToIt) {
 // nothing. Mutations that die here: contacts taken for proof where the row reports the first alone; the end
 // of an interval taken for the start of the next where they differ; pairs left out that nothing explains.
 void expect_right(Input& input, const Strategy& strategy, const AnswerOptions& options, IntervalRange range,
-                  std::array<std::size_t, 4>& verdicts) {
+                  VerdictCounts& verdicts) {
   Answerer answerer(input, strategy, exact(), options);
   const std::unique_ptr<Detector> reference = complete_reference().make(input.setup(exact())).detector;
   EmbeddingTest looked(input.mesh, input.reference);
@@ -52,7 +52,7 @@ void expect_right(Input& input, const Strategy& strategy, const AnswerOptions& o
             tell_meetings_apart(input.mesh, input.rest(), looked.find_all(input.rest(), kAll)).crossing};
   for (std::size_t i = range.first; i < range.last; ++i) {
     const IntervalAnswer answer = answerer.answer(i, input.clip->load(i));
-    ++verdicts[static_cast<std::size_t>(answer.verdict)];
+    verdicts.add(answer.verdict);
     const scenes::ClipInterval interval = input.clip->load(i);
     Crossings start = looked.find_all(interval.motion.start(), kAll);
     EXPECT_EQ(answer.starts_embedded, start.total == 0) << i;
@@ -82,10 +82,6 @@ void expect_right(Input& input, const Strategy& strategy, const AnswerOptions& o
   }
 }
 
-std::size_t count(const std::array<std::size_t, 4>& verdicts, IntervalVerdict verdict) {
-  return verdicts[static_cast<std::size_t>(verdict)];
-}
-
 TEST(AnswerSummary, TakesRoundingForNoMotion) {
   const test::Shape ball = test::icosphere(1);
   for (const double by : {1e-11, 1e-6}) {
@@ -103,7 +99,7 @@ class Answers : public testing::TestWithParam<const char*> {};
 // A figure that has eyes in its head at rest and touches itself in one of two clips.
 TEST_P(Answers, OfACharacterAreRight) {
   const Scratch scratch;
-  std::array<std::size_t, 4> verdicts{};
+  VerdictCounts verdicts;
   for (const char* clip : {"0", "1"})
     for (const bool keep : {false, true})
       for (const bool first : {false, true}) {
@@ -119,19 +115,19 @@ TEST_P(Answers, OfACharacterAreRight) {
         expect_right(input, strategy_named(GetParam()), {first, false, keep},
                      {0, input.clip->interval_count()}, verdicts);
       }
-  EXPECT_GT(count(verdicts, IntervalVerdict::clear), 3u);
-  EXPECT_GT(count(verdicts, IntervalVerdict::intersects_at_start), 3u);
+  EXPECT_GT(verdicts[IntervalVerdict::clear], 3u);
+  EXPECT_GT(verdicts[IntervalVerdict::intersects_at_start], 3u);
 }
 
 // Two balls, one of which flies into the other and rests there, and comes out again.
 TEST_P(Answers, OfABodyInsideItselfSayThatItCollides) {
   for (const bool first : {false, true}) {
     Input input = two_balls({0.0, -0.5, -1.2, -2.2, -2.2, -1.9, -0.3, 0.1});
-    std::array<std::size_t, 4> verdicts{};
+    VerdictCounts verdicts;
     expect_right(input, strategy_named(GetParam()), {first, false, false}, {0, 7}, verdicts);
-    EXPECT_EQ(count(verdicts, IntervalVerdict::clear), 2u);
-    EXPECT_EQ(count(verdicts, IntervalVerdict::touches), 1u);
-    EXPECT_EQ(count(verdicts, IntervalVerdict::intersects_at_start), 4u);
+    EXPECT_EQ(verdicts[IntervalVerdict::clear], 2u);
+    EXPECT_EQ(verdicts[IntervalVerdict::touches], 1u);
+    EXPECT_EQ(verdicts[IntervalVerdict::intersects_at_start], 4u);
   }
 }
 
@@ -143,24 +139,24 @@ TEST_P(Answers, LeaveOutWhatCrossesInFrameZeroUnlessAsked) {
   std::vector<std::vector<Vec3>> frames;
   for (const double x : {0.0, 0.01, 0.03, 0.01, -1.9, -1.9})
     frames.push_back(moved_part(balls, second, {x, 0, 0}));
-  std::array<std::size_t, 4> left_out{}, kept{};
+  VerdictCounts left_out, kept;
   for (const bool first : {false, true}) {
     Input input = input_of(balls, frames);
     expect_right(input, strategy_named(GetParam()), {first, false, false}, {0, 5}, left_out);
     expect_right(input, strategy_named(GetParam()), {first, false, true}, {0, 5}, kept);
   }
-  EXPECT_EQ(count(left_out, IntervalVerdict::clear), 6u);
-  EXPECT_EQ(count(left_out, IntervalVerdict::touches), 2u) << "the ball flies through to the other side";
-  EXPECT_EQ(count(left_out, IntervalVerdict::intersects_at_start), 2u) << "and crosses there";
-  EXPECT_EQ(count(kept, IntervalVerdict::intersects_at_start), 10u);
+  EXPECT_EQ(left_out[IntervalVerdict::clear], 6u);
+  EXPECT_EQ(left_out[IntervalVerdict::touches], 2u) << "the ball flies through to the other side";
+  EXPECT_EQ(left_out[IntervalVerdict::intersects_at_start], 2u) << "and crosses there";
+  EXPECT_EQ(kept[IntervalVerdict::intersects_at_start], 10u);
 }
 
 // A simulator's step: intervals end where nothing goes on.
 TEST_P(Answers, OfAScenesStepsAreRight) {
   Input input = open_input("urchin_contact");
-  std::array<std::size_t, 4> verdicts{};
+  VerdictCounts verdicts;
   expect_right(input, strategy_named(GetParam()), {}, {0, input.clip->interval_count()}, verdicts);
-  EXPECT_GT(count(verdicts, IntervalVerdict::touches), 3u);
+  EXPECT_GT(verdicts[IntervalVerdict::touches], 3u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Strategies, Answers, testing::Values("base", "drvbc_fast", "drvbc_fast_complete"),

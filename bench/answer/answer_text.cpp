@@ -181,9 +181,9 @@ std::string verdict_predicate(const ClipAnswer& answer) {
   const Input& input = answer.input;
   const AnswerSummary& s = answer.summary;
   const bool is_thick = input.thickness.length > 0;
-  const std::size_t touch = s.count(IntervalVerdict::touches), close = s.count(IntervalVerdict::close),
-                    cross = s.count(IntervalVerdict::intersects_at_start),
-                    undecided = s.count(IntervalVerdict::undecided);
+  const std::size_t touch = s.verdicts[IntervalVerdict::touches], close = s.verdicts[IntervalVerdict::close],
+                    cross = s.verdicts[IntervalVerdict::intersects_at_start],
+                    undecided = s.verdicts[IntervalVerdict::undecided];
   const std::string apart = apart_text(answer);
   if (input.is_one_pose) {
     if (cross > 0)
@@ -247,12 +247,13 @@ Sentences sentences(const ClipAnswer& answer) {
   if (const std::size_t twins = identical_triangles(input.mesh); twins > 0)
     out.identical = identical_text(twins);
   out.counts =
-      many(s.intervals(), "interval") + ": " + std::to_string(s.count(IntervalVerdict::clear)) + " clear, " +
-      (input.thickness.length > 0 ? std::to_string(s.count(IntervalVerdict::close)) + " close, " : "") +
-      std::to_string(s.count(IntervalVerdict::touches)) + " touch, " +
-      std::to_string(s.count(IntervalVerdict::intersects_at_start)) + " cross at their start";
-  if (s.count(IntervalVerdict::undecided) > 0)
-    out.counts += ", " + std::to_string(s.count(IntervalVerdict::undecided)) + " undecided";
+      many(s.intervals(), "interval") + ": " + std::to_string(s.verdicts[IntervalVerdict::clear]) +
+      " clear, " +
+      (input.thickness.length > 0 ? std::to_string(s.verdicts[IntervalVerdict::close]) + " close, " : "") +
+      std::to_string(s.verdicts[IntervalVerdict::touches]) + " touch, " +
+      std::to_string(s.verdicts[IntervalVerdict::intersects_at_start]) + " cross at their start";
+  if (s.verdicts[IntervalVerdict::undecided] > 0)
+    out.counts += ", " + std::to_string(s.verdicts[IntervalVerdict::undecided]) + " undecided";
   if (s.worst) {
     out.worst = "worst: interval " + std::to_string(s.worst->moment.interval) + ", from " +
                 moment_text(input, {s.worst->moment.interval, 0}) + ": ";

@@ -1,7 +1,6 @@
 #include "bench/answer/clip_answer.h"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 #include <tuple>
 
@@ -41,15 +40,11 @@ double frame_of(const Input& input, const ClipMoment& moment) {
   return seconds ? frame_at(*input.import, *seconds) : static_cast<double>(moment.interval) + moment.time;
 }
 
-std::size_t AnswerSummary::intervals() const {
-  return std::accumulate(verdicts.begin(), verdicts.end(), std::size_t{0});
-}
-
 void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, const SurfaceNames& names) {
   moves = moves || is_moving(motion);
   if (intervals() == 0) first_index = answer.index;
   last_index = answer.index;
-  ++verdicts[static_cast<std::size_t>(answer.verdict)];
+  verdicts.add(answer.verdict);
   ++strategies[std::string(answer.strategy->name)];
   proven += answer.proven;
   with_left_out += answer.rest_pairs + answer.rest_contacts > 0;
@@ -107,13 +102,6 @@ void AnswerSummary::add_ignored(const IntervalAnswer& answer, const SurfaceNames
     if (contact.verdict == Verdict::contact)
       ++meet(names.triangle_of(contact.pair, false), names.triangle_of(contact.pair, true)).contacts;
   with_ignored += !here.empty();
-}
-
-IntervalVerdict AnswerSummary::verdict() const {
-  for (const IntervalVerdict worst : {IntervalVerdict::intersects_at_start, IntervalVerdict::touches,
-                                      IntervalVerdict::close, IntervalVerdict::undecided})
-    if (count(worst) > 0) return worst;
-  return IntervalVerdict::clear;
 }
 
 std::size_t identical_triangles(const TriangleMesh& mesh) {

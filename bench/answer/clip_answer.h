@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -29,7 +28,7 @@ std::optional<double> second_of(const Input& input, const ClipMoment& moment);
 
 // Sums up the answers to the intervals of a clip.
 struct AnswerSummary {
-  std::array<std::size_t, 5> verdicts{};          // by IntervalVerdict
+  VerdictCounts verdicts;
   std::map<std::string, std::size_t> strategies;  // how many intervals each answered
   std::size_t proven = 0;
   std::size_t with_left_out = 0;                // intervals from which something was left out
@@ -67,10 +66,8 @@ struct AnswerSummary {
   std::size_t close_at_start = 0, with_close_at_start = 0;
   double embedding_ms = 0, query_ms = 0, load_ms = 0, wall_ms = 0, overlap_ms = 0;
 
-  std::size_t intervals() const;
-  std::size_t count(IntervalVerdict verdict) const { return verdicts[static_cast<std::size_t>(verdict)]; }
-  // The worst verdict of any interval.
-  IntervalVerdict verdict() const;
+  std::size_t intervals() const { return verdicts.total(); }
+  IntervalVerdict verdict() const { return verdicts.worst(); }
   // `motion` is that of the interval.
   void add(const IntervalAnswer& answer, const Motion& motion, const SurfaceNames& names);
 
@@ -79,11 +76,6 @@ struct AnswerSummary {
 
   bool parted_ = false;  // an interval after `first` is clear
 };
-
-// Whether anything touches, crosses, or comes within the thickness.
-constexpr bool collides(IntervalVerdict verdict) {
-  return verdict != IntervalVerdict::clear && verdict != IntervalVerdict::undecided;
-}
 
 // What one strategy answers to a clip, or to some intervals of it. Texts (answer_text.h) and JSON
 // (answer_json.h) are written from this alone.

@@ -57,23 +57,15 @@ double at_share(const Input& input, std::size_t interval, double seconds) {
   return std::clamp((seconds - from) / (to - from), 0.0, 1.0);
 }
 
-bool meets(TrueVerdict verdict) {
-  return verdict == TrueVerdict::touches || verdict == TrueVerdict::intersects_at_start;
-}
-
 // Of a span at whose start something meets no more is asked, and nothing is known of how far it leaves
 // straight lines.
 TrueAnswer met_at(double time, bool crosses, const CrossingPair& pair) {
-  TrueAnswer out{.verdict = crosses ? TrueVerdict::intersects_at_start : TrueVerdict::touches,
+  TrueAnswer out{.verdict = crosses ? IntervalVerdict::intersects_at_start : IntervalVerdict::touches,
                  .from = time,
                  .to = time,
                  .pair = pair};
   out.deviation = std::numeric_limits<double>::infinity();
   return out;
-}
-
-bool meets(IntervalVerdict verdict) {
-  return verdict == IntervalVerdict::touches || verdict == IntervalVerdict::intersects_at_start;
 }
 
 std::string first_text(const Input& input, const TrueSummary::Meeting& first) {
@@ -83,7 +75,7 @@ std::string first_text(const Input& input, const TrueSummary::Meeting& first) {
     return std::string(digits);
   };
   const TrueAnswer& answer = first.answer;
-  const bool crosses = answer.verdict == TrueVerdict::intersects_at_start;
+  const bool crosses = answer.verdict == IntervalVerdict::intersects_at_start;
   return "at frame " + frame(answer.from) + (answer.to > answer.from ? " to " + frame(answer.to) : "") +
          " (" + short_text(answer.to) + " s): " + meeting_text(first.names, crosses ? "crosses" : "touches");
 }
@@ -112,7 +104,7 @@ void TrueAnswerer::answer(const Motion& straight, IntervalAnswer& answer) {
       throw InputError("--true-motion: frame " + std::to_string(answer.index) +
                        " and the motion through it are " + exact_text(*gap) +
                        " apart, which is a fault of this program; ask about straight lines, without it");
-    answer.motion = TrueAnswer{.verdict = TrueVerdict::undecided,
+    answer.motion = TrueAnswer{.verdict = IntervalVerdict::undecided,
                                .from = from,
                                .to = to,
                                .deviation = std::numeric_limits<double>::infinity()};
@@ -122,29 +114,21 @@ void TrueAnswerer::answer(const Motion& straight, IntervalAnswer& answer) {
     const auto met_here = clear_until_ == from ? std::nullopt : motion_.meeting_at(from);
     answer.motion = met_here ? met_at(from, met_here->crosses, met_here->pair) : motion_.answer(from, to);
   }
-  clear_until_ = answer.motion->verdict == TrueVerdict::clear ? std::optional(to) : std::nullopt;
+  clear_until_ = answer.motion->verdict == IntervalVerdict::clear ? std::optional(to) : std::nullopt;
   answer.motion_ms = asking.milliseconds();
 }
 
 bool differs(const IntervalAnswer& answer) {
   if (!answer.motion) return false;
-  const TrueVerdict own = answer.motion->verdict;
-  const bool is_known = meets(own) || own == TrueVerdict::clear;
+  const IntervalVerdict own = answer.motion->verdict;
+  const bool is_known = meets(own) || own == IntervalVerdict::clear;
   return is_known && meets(own) != meets(answer.verdict);
-}
-
-IntervalVerdict TrueSummary::verdict() const {
-  if (count(TrueVerdict::intersects_at_start) > 0) return IntervalVerdict::intersects_at_start;
-  if (count(TrueVerdict::touches) > 0) return IntervalVerdict::touches;
-  if (count(TrueVerdict::close) > 0) return IntervalVerdict::close;
-  return count(TrueVerdict::undecided) > 0 ? IntervalVerdict::undecided : IntervalVerdict::clear;
 }
 
 void TrueSummary::add(const IntervalAnswer& answer, const SurfaceNames& names) {
   if (!answer.motion) return;
   const TrueAnswer& own = *answer.motion;
-  ++intervals;
-  ++verdicts[static_cast<std::size_t>(own.verdict)];
+  verdicts.add(own.verdict);
   parts += own.parts, pieces += own.pieces, jumps += own.jumps;
   ms += answer.motion_ms;
   if (own.parts == 0)
@@ -163,24 +147,24 @@ void TrueSummary::add(const IntervalAnswer& answer, const SurfaceNames& names) {
 std::string true_predicate(const Input& input, const TrueSummary& s, const std::string& frames,
                            const std::string& exceptions) {
   const std::string apart = exceptions.empty() ? "" : ", apart from " + exceptions;
-  const auto in = [&](TrueVerdict verdict) {
-    return " in " + std::to_string(s.count(verdict)) + " of " + std::to_string(s.intervals) +
+  const auto in = [&](IntervalVerdict verdict) {
+    return " in " + std::to_string(s.verdicts[verdict]) + " of " + std::to_string(s.intervals()) +
            " intervals of its true motion";
   };
-  const std::size_t touch = s.count(TrueVerdict::touches);
+  const std::size_t touch = s.verdicts[IntervalVerdict::touches];
   std::string text;
   switch (s.verdict()) {
     case IntervalVerdict::intersects_at_start:
-      text = "crosses itself" + in(TrueVerdict::intersects_at_start) +
+      text = "crosses itself" + in(IntervalVerdict::intersects_at_start) +
              (touch > 0 ? " and touches itself in " + std::to_string(touch) + " more" : "");
       break;
     case IntervalVerdict::touches:
-      text = "touches itself" + in(TrueVerdict::touches);
+      text = "touches itself" + in(IntervalVerdict::touches);
       break;
     case IntervalVerdict::close:
-      return "comes too close to itself to tell whether it touches" + in(TrueVerdict::close) + apart;
+      return "comes too close to itself to tell whether it touches" + in(IntervalVerdict::close) + apart;
     case IntervalVerdict::undecided:
-      return "may touch itself, which is undecided" + in(TrueVerdict::undecided) + apart;
+      return "may touch itself, which is undecided" + in(IntervalVerdict::undecided) + apart;
     case IntervalVerdict::clear:
       return (exceptions.empty() ? "does not touch itself" : "touches itself") +
              (" in its true motion" + frames) + (exceptions.empty() ? "" : " only in " + exceptions);
@@ -195,13 +179,13 @@ std::string true_motion_text(const Input& input, const TrueSummary& s) {
     return "  answered for straight lines between frames; --true-motion asks about the paths on which bones "
            "carry "
            "the surface\n";
-  const auto part = [&](TrueVerdict verdict, const char* words) {
-    return s.count(verdict) > 0 ? std::to_string(s.count(verdict)) + " " + words + ", " : std::string();
+  const auto part = [&](IntervalVerdict verdict, const char* words) {
+    return s.verdicts[verdict] > 0 ? std::to_string(s.verdicts[verdict]) + " " + words + ", " : std::string();
   };
-  std::string out = "  true motion: " + part(TrueVerdict::clear, "clear") +
-                    part(TrueVerdict::touches, "touch") + part(TrueVerdict::close, "too close to tell") +
-                    part(TrueVerdict::undecided, "undecided") +
-                    part(TrueVerdict::intersects_at_start, "cross at their start or after a jump");
+  std::string out =
+      "  true motion: " + part(IntervalVerdict::clear, "clear") + part(IntervalVerdict::touches, "touch") +
+      part(IntervalVerdict::close, "too close to tell") + part(IntervalVerdict::undecided, "undecided") +
+      part(IntervalVerdict::intersects_at_start, "cross at their start or after a jump");
   out.resize(out.size() - 2);
   out += "\n  straight lines between frames ";
   if (s.only_true > 0) out += "miss contacts in " + std::to_string(s.only_true) + " of these intervals";
@@ -211,7 +195,7 @@ std::string true_motion_text(const Input& input, const TrueSummary& s) {
     out += (s.only_true > 0 ? "; they have contacts in " : "have contacts in ") +
            std::to_string(s.only_straight) + " in which the true motion has none";
   if (s.only_true + s.only_straight == 0) out += "agree with it in every interval that is decided";
-  if (s.not_asked == s.intervals) {
+  if (s.not_asked == s.intervals()) {
     out += "\n  something meets at the start of every interval, and no more is asked of such";
   } else if (s.bounded() == 0) {
     out += "\n  of no interval as a whole is it known how far the surface leaves straight lines";
@@ -240,7 +224,7 @@ json true_motion_json(const Input& input, const IntervalAnswer& answer) {
           {"differs", differs(answer)},
           {"from", at_share(input, answer.index, own.from)},
           {"to", at_share(input, answer.index, own.to)},
-          {"within", own.verdict == TrueVerdict::close ? json(own.within) : json()},
+          {"within", own.verdict == IntervalVerdict::close ? json(own.within) : json()},
           {"pair", std::move(pair)},
           {"parts_again", own.parts_again},
           {"deviation", bounded ? json(own.deviation) : json()},
@@ -259,11 +243,11 @@ json true_motion_json(const Input& input, const TrueSummary& s) {
              {"first", s.first->names.first},
              {"second", s.first->names.second}};
   return {{"verdict", to_string(s.verdict())},
-          {"clear", s.count(TrueVerdict::clear)},
-          {"touches", s.count(TrueVerdict::touches)},
-          {"close", s.count(TrueVerdict::close)},
-          {"undecided", s.count(TrueVerdict::undecided)},
-          {"intersects_at_start", s.count(TrueVerdict::intersects_at_start)},
+          {"clear", s.verdicts[IntervalVerdict::clear]},
+          {"touches", s.verdicts[IntervalVerdict::touches]},
+          {"close", s.verdicts[IntervalVerdict::close]},
+          {"undecided", s.verdicts[IntervalVerdict::undecided]},
+          {"intersects_at_start", s.verdicts[IntervalVerdict::intersects_at_start]},
           {"only_true", s.only_true},
           {"only_straight", s.only_straight},
           {"first", std::move(first)},

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -38,8 +37,7 @@ bool differs(const IntervalAnswer& answer);
 
 // Sums up the true motion of a clip.
 struct TrueSummary {
-  std::size_t intervals = 0;
-  std::array<std::size_t, 5> verdicts{};  // by TrueVerdict
+  VerdictCounts verdicts;
   // Intervals that touch or cross by one motion alone: by the true one, and by straight lines.
   std::size_t only_true = 0, only_straight = 0;
   std::size_t parts = 0, pieces = 0, jumps = 0;
@@ -54,9 +52,9 @@ struct TrueSummary {
   };
   std::optional<Meeting> first, first_missed;
 
-  std::size_t count(TrueVerdict verdict) const { return verdicts[static_cast<std::size_t>(verdict)]; }
-  std::size_t bounded() const { return intervals - without_bound - not_asked; }
-  IntervalVerdict verdict() const;
+  std::size_t intervals() const { return verdicts.total(); }
+  std::size_t bounded() const { return intervals() - without_bound - not_asked; }
+  IntervalVerdict verdict() const { return verdicts.worst(); }
   void add(const IntervalAnswer& answer, const SurfaceNames& names);
 };
 

@@ -1,20 +1,17 @@
 #pragma once
 
 // The subcommands of `cscd`: each registers itself on the program and runs in its callback. A refused input
-// is an InputError (main prints its line, exit 2); a run that answers "no" leaves by ExitStatus.
+// is an InputError (main prints its line and ends with ExitStatus::refused); a run that answers "no" leaves
+// by end_with().
 
 // Whole, because a program that links any command links what CLI::App refers to.
 #include <CLI/CLI.hpp>
 
+#include "bench/output/exit_status.h"
+
 namespace cscd::bench {
 
-// Thrown by a command that ran to its end and must not report success; main returns the code and prints
-// nothing.
-struct ExitStatus {
-  int code;
-};
-inline constexpr ExitStatus kVerificationFailed{1};
-inline constexpr ExitStatus kContactFound{3};  // query --fail-on-contact
+inline constexpr ExitStatus kVerificationFailed = ExitStatus::failed;
 
 void add_query(CLI::App& app);
 void add_view(CLI::App& app);

@@ -9,10 +9,12 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "bench/output/exit_status.h"
+
 namespace cscd::bench {
 namespace {
 
-constexpr int kNotWritten = 2;
+constexpr int kNotWritten = static_cast<int>(ExitStatus::refused);
 
 // Whether standard output is a pipe without a reader. The error of the write that found out may be long gone.
 bool nobody_reads() {

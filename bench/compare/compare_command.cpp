@@ -25,7 +25,7 @@ void compare_sides(const CompareOptions& options) {
   if (json) json->commit(json_text(comparison_json(comparison)));
   if (markdown) markdown->commit(comparison_markdown(comparison));
   std::fputs(comparison_text(comparison, options.show_all).c_str(), stdout);
-  if (const int status = exit_status(comparison.verdict()); status != 0) throw ExitStatus{status};
+  end_with(exit_status(comparison.verdict()));
 }
 
 }  // namespace

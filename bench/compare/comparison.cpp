@@ -146,17 +146,17 @@ Comparison compare(const Side& before, Side after, Lane lane) {
   return out;
 }
 
-int exit_status(ComparisonVerdict verdict) {
+ExitStatus exit_status(ComparisonVerdict verdict) {
   switch (verdict) {
     case ComparisonVerdict::nothing_worse:
-      return 0;
+      return ExitStatus::done;
     case ComparisonVerdict::worse:
     case ComparisonVerdict::less_true:
-      return 1;
+      return ExitStatus::failed;
     case ComparisonVerdict::not_comparable:
       break;
   }
-  return 2;
+  return ExitStatus::refused;
 }
 
 std::string_view to_string(ComparisonVerdict verdict) {

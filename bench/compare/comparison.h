@@ -8,6 +8,7 @@
 #include "bench/compare/times.h"
 #include "bench/compare/truth.h"
 #include "bench/compare/work.h"
+#include "bench/output/exit_status.h"
 
 namespace cscd::bench {
 
@@ -52,7 +53,7 @@ struct Comparison {
 Comparison compare(const Side& before, Side after, Lane lane);
 
 // 0 nothing worse, 1 worse or less true, 2 not comparable.
-int exit_status(ComparisonVerdict verdict);
+ExitStatus exit_status(ComparisonVerdict verdict);
 std::string_view to_string(ComparisonVerdict verdict);
 
 nlohmann::ordered_json comparison_json(const Comparison& comparison);

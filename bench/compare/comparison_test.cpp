@@ -42,7 +42,7 @@ TEST(Comparison, OfEqualRecordsFindsNothing) {
   EXPECT_TRUE(same.truth.empty());
   EXPECT_TRUE(same.counters.empty());
   EXPECT_EQ(same.compared_counts, 3u * 2 * 4);  // rows, costs and other counters, intervals
-  EXPECT_EQ(exit_status(same.verdict()), 0);
+  EXPECT_EQ(exit_status(same.verdict()), ExitStatus::done);
 }
 
 // What was not compared is not called the same.
@@ -50,7 +50,7 @@ TEST(Comparison, OfOtherScenesComparesNothing) {
   Record other = small_record();
   other.scene.name = "foot";
   const Comparison none = compare(one_side(small_record()), one_side(other), Lane::all);
-  EXPECT_EQ(exit_status(none.verdict()), 2);
+  EXPECT_EQ(exit_status(none.verdict()), ExitStatus::refused);
   const std::string text = comparison_text(none);
   EXPECT_EQ(
       text.find("verdict: not comparable: everything not compared: OLD and NEW have no scene in common\n"),
@@ -113,7 +113,7 @@ TEST(Comparison, ShowsTimesThatItCannotJudge) {
   for (auto& repetition : slower.strategies[0].ms["traversal"])
     for (double& ms : repetition) ms *= 2;
   const Comparison one = compare(one_side(small_record()), one_side(slower), Lane::all);
-  EXPECT_EQ(exit_status(one.verdict()), 2);
+  EXPECT_EQ(exit_status(one.verdict()), ExitStatus::refused);
   ASSERT_EQ(one.unjudged_times.size(), 3u);
   EXPECT_NEAR(*one.unjudged_times[0].after_ms / *one.unjudged_times[0].before_ms, 1.9,
               0.01);  // refit takes 1 of 10
@@ -188,13 +188,13 @@ TEST(Comparison, JudgesCountersExactly) {
   ASSERT_EQ(worse.counters.size(), 1u);
   EXPECT_EQ(worse.counters[0].change, Change::worse);
   EXPECT_EQ(worse.counters[0].after, 1001u);
-  EXPECT_EQ(exit_status(worse.verdict()), 1);
+  EXPECT_EQ(exit_status(worse.verdict()), ExitStatus::failed);
   const Comparison better = after([](Record& r) { --r.strategies[1].counts["bvot"][3]; });
   EXPECT_EQ(better.counters.at(0).change, Change::better);
-  EXPECT_EQ(exit_status(better.verdict()), 0);
+  EXPECT_EQ(exit_status(better.verdict()), ExitStatus::done);
   const Comparison other = after([](Record& r) { ++r.strategies[1].counts["clusters"][3]; });
   EXPECT_EQ(other.counters.at(0).change, Change::different);
-  EXPECT_EQ(exit_status(other.verdict()), 0);
+  EXPECT_EQ(exit_status(other.verdict()), ExitStatus::done);
 }
 
 TEST(Comparison, ComparesTheIntervalsThatBothHave) {
@@ -223,7 +223,7 @@ TEST(Comparison, JudgesMemoryBeyondItsFloor) {
   EXPECT_TRUE(noise.footprint.empty());
   const Comparison more = compare(with_memory(100 << 20), with_memory(110 << 20), Lane::counters);
   EXPECT_EQ(more.footprint.at(0).change, Change::worse);
-  EXPECT_EQ(exit_status(more.verdict()), 1);
+  EXPECT_EQ(exit_status(more.verdict()), ExitStatus::failed);
 }
 
 TEST(Comparison, RefusesTimesOfOtherMachinesWithTheReason) {
@@ -231,7 +231,7 @@ TEST(Comparison, RefusesTimesOfOtherMachinesWithTheReason) {
   ASSERT_EQ(other.refusals.size(), 1u);
   EXPECT_EQ(other.refusals[0].what, "times");
   EXPECT_EQ(other.refusals[0].reason, "other machines: cpu is a machine and another machine");
-  EXPECT_EQ(exit_status(other.verdict()), 2);
+  EXPECT_EQ(exit_status(other.verdict()), ExitStatus::refused);
   // Truth and counters are compared all the same.
   EXPECT_EQ(exit_status(after(
                             [](Record& r) {
@@ -240,8 +240,9 @@ TEST(Comparison, RefusesTimesOfOtherMachinesWithTheReason) {
                             },
                             Lane::all)
                             .verdict()),
-            1);
-  EXPECT_EQ(exit_status(after([](Record& r) { r.environment["cpu"] = "another machine"; }).verdict()), 0);
+            ExitStatus::failed);
+  EXPECT_EQ(exit_status(after([](Record& r) { r.environment["cpu"] = "another machine"; }).verdict()),
+            ExitStatus::done);
 }
 
 TEST(Comparison, RefusesWhatCannotBeCompared) {
@@ -262,7 +263,7 @@ TEST(Comparison, RefusesWhatCannotBeCompared) {
               r.environment["instruction_set"] = "SSE2";
             })).find("counters: instruction sets"),
             std::string::npos);
-  EXPECT_EQ(exit_status(after([](Record& r) { r.scene.name = "foot"; }).verdict()), 2);
+  EXPECT_EQ(exit_status(after([](Record& r) { r.scene.name = "foot"; }).verdict()), ExitStatus::refused);
 }
 
 // A setting that changes what a run counts or answers, and how the reason names it.
@@ -382,7 +383,7 @@ Comparison of_processes(std::size_t count, double slower, bool in_turns) {
 TEST(Comparison, ReportsASlowerStage) {
   const Comparison slower = of_processes(9, 1.1, true);
   EXPECT_TRUE(slower.refusals.empty()) << comparison_text(slower);
-  EXPECT_EQ(exit_status(slower.verdict()), 1);
+  EXPECT_EQ(exit_status(slower.verdict()), ExitStatus::failed);
   for (const TimeFinding& time : slower.times)
     EXPECT_EQ(time.change, time.row == "slow" && (time.stage == "traversal" || time.stage == "total")
                                ? Change::worse
@@ -392,12 +393,12 @@ TEST(Comparison, ReportsASlowerStage) {
   EXPECT_NEAR(slower.means.at(0).ratio.value, 1 + 0.1 * 9 / 10, 1e-3);  // refit takes 1 of 10 and is the same
   EXPECT_EQ(schema_violation(comparison_json(slower), "compare.schema.json"), "");
   EXPECT_NE(comparison_markdown(slower).find("### Times that changed"), std::string::npos);
-  EXPECT_EQ(exit_status(of_processes(9, 0.9, true).verdict()), 0);
+  EXPECT_EQ(exit_status(of_processes(9, 0.9, true).verdict()), ExitStatus::done);
 }
 
 TEST(Comparison, WithholdsWhatIsBelowTheFloor) {
   const Comparison little = of_processes(9, 1.01, true);
-  EXPECT_EQ(exit_status(little.verdict()), 0);
+  EXPECT_EQ(exit_status(little.verdict()), ExitStatus::done);
   EXPECT_EQ(little.times.at(1).stage, "traversal");
   EXPECT_EQ(little.times.at(1).withheld, "below the floor");
 }
@@ -413,14 +414,14 @@ TEST(Comparison, WithholdsWhatOnlySomeLayoutsShow) {
       for (double& ms : repetition) ms *= factor;
   }
   const Comparison comparison = compare(side_of(before, "OLD"), side_of(changed, "NEW"), Lane::all);
-  EXPECT_EQ(exit_status(comparison.verdict()), 0) << comparison_text(comparison);
+  EXPECT_EQ(exit_status(comparison.verdict()), ExitStatus::done) << comparison_text(comparison);
   EXPECT_EQ(comparison.times.at(1).pairings, 3u);
   EXPECT_EQ(comparison.times.at(1).agreeing, 2u);
 }
 
 TEST(Comparison, RefusesTimesThatWereNotMeasuredInTurns) {
   const Comparison after_each_other = of_processes(9, 1.1, false);
-  EXPECT_EQ(exit_status(after_each_other.verdict()), 2);
+  EXPECT_EQ(exit_status(after_each_other.verdict()), ExitStatus::refused);
   EXPECT_NE(comparison_text(after_each_other).find("one side was measured after the other"),
             std::string::npos);
 }

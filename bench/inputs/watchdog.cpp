@@ -5,12 +5,12 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include "bench/output/exit_status.h"
 #include "scenes/base/temporaries.h"
 
 namespace cscd::bench {
 namespace {
 
-constexpr int kBadInput = 2;
 const std::string* last_words = nullptr;
 
 // Between any two instructions of the program: system calls only.
@@ -18,7 +18,7 @@ void give_up(int) {
   const ssize_t ignored = write(STDERR_FILENO, last_words->data(), last_words->size());
   static_cast<void>(ignored);
   remove_temporaries();
-  _exit(kBadInput);
+  _exit(static_cast<int>(ExitStatus::refused));
 }
 
 void set_timer(double seconds) {

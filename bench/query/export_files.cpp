@@ -199,7 +199,7 @@ class Marker {
 
   void add_contacts(const IntervalAnswer& answer, const Motion& motion, PoseMarks& marks) const {
     const bool is_thick = input_.thickness.length > 0;
-    if (answer.motion && answer.motion->verdict == TrueVerdict::touches)
+    if (answer.motion && answer.motion->verdict == IntervalVerdict::touches)
       mark_both(*answer.motion->pair, marks.touches);
     for (const Contact& contact : answer.found.contacts) {
       if (contact.verdict != Verdict::contact) continue;

@@ -1,9 +1,9 @@
 #include <CLI/App.hpp>
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -85,13 +85,13 @@ class AllVerdicts {
  public:
   void add(const std::string& clip, IntervalVerdict verdict, const std::vector<std::string>& apart) {
     apart_.insert(apart.begin(), apart.end());
-    names_[static_cast<std::size_t>(verdict)].push_back(clip);
+    names_[verdict].push_back(clip);
     if (verdict == IntervalVerdict::clear) (apart.empty() ? untouched_ : left_out_).push_back(clip);
   }
   void pass_over(const std::string& clip) { still_.push_back(clip); }
   std::size_t answered() const {
     std::size_t count = 0;
-    for (const std::vector<std::string>& names : names_) count += names.size();
+    for (const auto& [verdict, names] : names_) count += names.size();
     return count;
   }
   std::string sentence(const std::string& input) const {
@@ -128,9 +128,11 @@ class AllVerdicts {
 
  private:
   const std::vector<std::string>& of(IntervalVerdict verdict) const {
-    return names_[static_cast<std::size_t>(verdict)];
+    static const std::vector<std::string> kNone;
+    const auto found = names_.find(verdict);
+    return found == names_.end() ? kNone : found->second;
   }
-  std::array<std::vector<std::string>, 5> names_;  // of clips, by their verdicts
+  std::map<IntervalVerdict, std::vector<std::string>> names_;  // of clips, by their verdicts
   std::vector<std::string> untouched_, left_out_;  // of the clear ones: those without and with exceptions
   std::vector<std::string> still_;
   std::set<std::string> apart_;
@@ -208,8 +210,8 @@ void query(QueryOptions options) {
     document.finish();
     output->commit();
   }
-  if (options.fail_on_contact && collides(said.verdict)) throw kContactFound;
-  if (said.too_deep) throw kContactFound;
+  const bool fails = said.too_deep || (options.fail_on_contact && collides(said.verdict));
+  end_with(fails ? ExitStatus::contact_found : ExitStatus::done);
 }
 
 }  // namespace

@@ -55,12 +55,12 @@ json true_moment(const Input& input, const SurfaceNames& names, const IntervalAn
   out["interval"] = answer.index - first;
   out["at"] = out[own.parts_again ? "from" : "to"];
   std::string text = "true motion: ";
-  const bool crosses = own.verdict == TrueVerdict::intersects_at_start;
+  const bool crosses = own.verdict == IntervalVerdict::intersects_at_start;
   if (own.pair) {
     text += meeting_text({names.place_of(own.pair->first), names.place_of(own.pair->second)},
-                         crosses                               ? "crosses"
-                         : own.verdict == TrueVerdict::touches ? "touches"
-                                                               : "comes close to");
+                         crosses                                   ? "crosses"
+                         : own.verdict == IntervalVerdict::touches ? "touches"
+                                                                   : "comes close to");
   } else {
     text += to_string(own.verdict);
   }
@@ -88,7 +88,7 @@ json record_clip(const ViewRequest& options, Input opened, Sections& sections) {
   json true_moments = json::array();
   const auto record_motion = [&](const IntervalAnswer& answer) {
     const TrueAnswer& motion = *answer.motion;
-    if (motion.verdict != TrueVerdict::clear || differs(answer))
+    if (motion.verdict != IntervalVerdict::clear || differs(answer))
       true_moments.push_back(true_moment(input, names, answer, asked.range().first));
     if (motion.pair && differs(answer) && answer.found.contacts.empty())
       clip.add_other_end(asked.true_positions_at(motion.parts_again ? motion.from : motion.to));

@@ -77,22 +77,6 @@ TrianglePair triangles_of(const CrossingPair& pair) {
 
 }  // namespace
 
-std::string_view to_string(TrueVerdict verdict) {
-  switch (verdict) {
-    case TrueVerdict::clear:
-      return "clear";
-    case TrueVerdict::touches:
-      return "touches";
-    case TrueVerdict::close:
-      return "close";
-    case TrueVerdict::intersects_at_start:
-      return "intersects_at_start";
-    case TrueVerdict::undecided:
-      return "undecided";
-  }
-  return "";
-}
-
 // The vertices that are looked at in pieces: those of all triangles that have one of the features.
 struct TrueMotion::Piece {
   std::vector<VertexId> vertices;  // sorted
@@ -189,7 +173,7 @@ TrueAnswer TrueMotion::answer(double from, double to) {
     if (more && !all_finite(after.error)) {
       more = give_up(begin, begin);
     } else if (const auto met = more ? meeting_at(begin) : std::nullopt) {
-      answer_.verdict = met->crosses ? TrueVerdict::intersects_at_start : TrueVerdict::touches;
+      answer_.verdict = met->crosses ? IntervalVerdict::intersects_at_start : IntervalVerdict::touches;
       answer_.from = answer_.to = begin;
       answer_.pair = met->pair;
       more = false;
@@ -202,7 +186,7 @@ TrueAnswer TrueMotion::answer(double from, double to) {
 }
 
 bool TrueMotion::give_up(double from, double to) {
-  answer_.verdict = TrueVerdict::undecided;
+  answer_.verdict = IntervalVerdict::undecided;
   answer_.from = from, answer_.to = to;
   answer_.pair.reset();
   return false;
@@ -210,8 +194,8 @@ bool TrueMotion::give_up(double from, double to) {
 
 void TrueMotion::say_close(double from, double to, double within, const std::vector<FeaturePair>& pairs) {
   answer_.within = std::max(answer_.within, within);
-  if (answer_.verdict == TrueVerdict::close) return;
-  answer_.verdict = TrueVerdict::close;
+  if (answer_.verdict == IntervalVerdict::close) return;
+  answer_.verdict = IntervalVerdict::close;
   answer_.from = from, answer_.to = to;
   answer_.pair = carriers(setup_.mesh, pairs.front()).front();
 }
@@ -270,7 +254,7 @@ void TrueMotion::find_close(const Places& from, const Places& to, double widest)
   const double distance = 2 * widest * kGrown;
   // What crosses need not be close. So a part is no clear start where something may cross: where pairs that
   // cross are left out, or where two features have come together in this span and cannot be told apart.
-  const bool may_cross = answer_.verdict != TrueVerdict::clear || options_.ignored != nullptr ||
+  const bool may_cross = answer_.verdict != IntervalVerdict::clear || options_.ignored != nullptr ||
                          (options_.left_out != nullptr && !options_.left_out->empty());
   const bool starts_clear = !may_cross && clear_time_ == from.time && distance <= clear_at_;
   const bool by_one = starts_clear || (setup_.exclusions == nullptr && waits_ == 0);
@@ -446,7 +430,7 @@ bool TrueMotion::proves_contact(const Piece& piece, const Places& from, const Pl
           unknown_from_ = unknown_from_ || before == Meets::unknown;
           unknown_to_ = unknown_to_ || after == Meets::unknown;
           if (before == Meets::unknown || after == Meets::unknown || before == after) continue;
-          answer_.verdict = TrueVerdict::touches;
+          answer_.verdict = IntervalVerdict::touches;
           answer_.from = from.time, answer_.to = to.time;
           answer_.pair = both;
           answer_.parts_again = before == Meets::yes;

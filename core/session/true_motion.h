@@ -5,7 +5,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string_view>
 #include <vector>
 
 #include "core/detect/culler.h"
@@ -14,23 +13,12 @@
 #include "core/detect/start/rest_crossings.h"
 #include "core/detect/strategy.h"
 #include "core/mesh/vertex_paths.h"
+#include "core/session/interval_verdict.h"
 
 namespace cscd {
 
-// What is known of the true paths of a span of time (core/soundness.md, "The true motion").
-enum class TrueVerdict {
-  clear,  // proven: nothing touches
-  // Proven: an edge pierces a face at one moment and is apart from it at another. Or triangles touch, without
-  // crossing, at the start or after a jump.
-  touches,
-  close,                // two features come within a distance, and what they do there cannot be told apart
-  intersects_at_start,  // triangles cross after a jump within the span
-  undecided             // the bounds on the paths do not suffice
-};
-std::string_view to_string(TrueVerdict verdict);
-
 struct TrueAnswer {
-  TrueVerdict verdict = TrueVerdict::clear;
+  IntervalVerdict verdict = IntervalVerdict::clear;
   // The verdict is about this span: the proof of a contact, the first closeness, or what is undecided.
   double from = 0, to = 0;
   // Of `close`: no more than this far apart at some time of the span; of all spans the largest such distance.

@@ -110,7 +110,7 @@ TEST(TrueMotion, TakesNoStartForEmbeddedWherePairsThatCrossAreLeftOut) {
     ASSERT_FALSE(motion.meeting_at(0));
     told_embedded = 0;
     const TrueAnswer answer = motion.answer(0, 1);
-    EXPECT_EQ(answer.verdict, TrueVerdict::clear);
+    EXPECT_EQ(answer.verdict, IntervalVerdict::clear);
     EXPECT_GT(answer.parts, 4u);
     EXPECT_EQ(told_embedded > 0, !crosses);
   }
@@ -126,7 +126,8 @@ TEST(TrueMotion, SearchesThePoseAfterEveryJump) {
     for (const double later : {0.0, -200.0}) {  // -200 times 0.01
       paths.later = later;
       const TrueAnswer answer = two.motion(paths).answer(0, 1);
-      EXPECT_EQ(answer.verdict, later < 0 ? TrueVerdict::intersects_at_start : TrueVerdict::clear) << at;
+      EXPECT_EQ(answer.verdict, later < 0 ? IntervalVerdict::intersects_at_start : IntervalVerdict::clear)
+          << at;
       EXPECT_EQ(answer.jumps, 1u);
       if (later < 0) {
         EXPECT_EQ(answer.from, at);
@@ -143,7 +144,7 @@ TEST(TrueMotion, DecidesNothingWherePlacesAreNotKnown) {
       Stepping paths(two.shape.positions, 3, 3.01);
       if (jumps) paths.jumps = {1};
       paths.unknown_from = unknown_from;
-      EXPECT_EQ(two.motion(paths).answer(0, 1).verdict, TrueVerdict::undecided);
+      EXPECT_EQ(two.motion(paths).answer(0, 1).verdict, IntervalVerdict::undecided);
     }
 }
 
@@ -168,7 +169,7 @@ TEST(TrueMotion, SaysNothingOfPathsWithoutABound) {
   const Unknown paths(two.shape.positions, 3, 4);
   TrueMotionOptions options = true_motion_options(1);
   options.most_parts = 16;
-  EXPECT_EQ(two.motion(paths, options).answer(0, 1).verdict, TrueVerdict::undecided);
+  EXPECT_EQ(two.motion(paths, options).answer(0, 1).verdict, IntervalVerdict::undecided);
 }
 
 // A narrow blade goes through a narrow post within a hundredth of the span: at neither end of a part as long
@@ -189,10 +190,11 @@ TEST(TrueMotion, LooksCloserThanTheResolutionWhileItPays) {
   const Sliding paths(shape, -0.7, 0.8);
   TrueMotionOptions options{.resolution = 0.01, .coarse = 0.05};
   const TrueAnswer found = TrueMotion(paths, setup, kDrvbcFastComplete, options).answer(0, 1);
-  EXPECT_EQ(found.verdict, TrueVerdict::touches);
+  EXPECT_EQ(found.verdict, IntervalVerdict::touches);
   EXPECT_LT(found.to - found.from, 1.0 / 256 + 1e-9);
   options.more_pieces = 0;
-  EXPECT_EQ(TrueMotion(paths, setup, kDrvbcFastComplete, options).answer(0, 1).verdict, TrueVerdict::close);
+  EXPECT_EQ(TrueMotion(paths, setup, kDrvbcFastComplete, options).answer(0, 1).verdict,
+            IntervalVerdict::close);
 }
 
 // Paths that leave their lines by nothing but rounding.
@@ -210,9 +212,11 @@ TEST(TrueMotion, TellsWhatFliesStraightThrough) {
   const StrategyInput setup{two.mesh, two.shape.positions, nullptr, *find_elementary_test("filtered_exact")};
   const Straight paths(two.shape.positions, -3, 4);
   TrueMotionOptions options{.resolution = 0.01, .coarse = 0.05};
-  EXPECT_EQ(TrueMotion(paths, setup, kDrvbcFastComplete, options).answer(0, 1).verdict, TrueVerdict::touches);
+  EXPECT_EQ(TrueMotion(paths, setup, kDrvbcFastComplete, options).answer(0, 1).verdict,
+            IntervalVerdict::touches);
   options.more_pieces = 0;
-  EXPECT_EQ(TrueMotion(paths, setup, kDrvbcFastComplete, options).answer(0, 1).verdict, TrueVerdict::close);
+  EXPECT_EQ(TrueMotion(paths, setup, kDrvbcFastComplete, options).answer(0, 1).verdict,
+            IntervalVerdict::close);
 }
 
 // A needle's tip goes through a face at a moment at which halving divides the span: there it cannot be told
@@ -236,7 +240,7 @@ TEST(TrueMotion, ProvesAContactAtTheMomentThatDividesASpan) {
          {static_cast<const VertexPaths*>(&bent), static_cast<const VertexPaths*>(&straight)}) {
       const TrueAnswer found =
           TrueMotion(*paths, setup, kDrvbcFastComplete, {.resolution = 0.01, .coarse = 0.05}).answer(0, 1);
-      EXPECT_EQ(found.verdict, TrueVerdict::touches);
+      EXPECT_EQ(found.verdict, IntervalVerdict::touches);
       EXPECT_LE(found.from, at);
       EXPECT_GE(found.to, at);
       EXPECT_LT(found.to - found.from, 1.0 / 256 + 1e-9);

@@ -38,7 +38,7 @@ double mean_edge_of(const TriangleMesh& mesh, std::span<const Vec3> at) {
 }
 
 struct Tally {
-  std::map<TrueVerdict, int> verdicts;
+  std::map<IntervalVerdict, int> verdicts;
   int crossing = 0;  // steps in which some sample crosses
 };
 
@@ -60,10 +60,10 @@ void compare_step(const Character& character, int samples, Tally& tally) {
   for (int i = 0; i <= samples && !crosses; ++i)
     crosses = !plain.embedded(sampled(character, i / double(samples)));
   tally.crossing += crosses;
-  if (answer.verdict == TrueVerdict::clear) {
+  if (answer.verdict == IntervalVerdict::clear) {
     EXPECT_FALSE(crosses) << "missed by a clear";
   }
-  if (answer.verdict == TrueVerdict::touches) {
+  if (answer.verdict == IntervalVerdict::touches) {
     ASSERT_TRUE(answer.pair);
     EXPECT_LE(answer.to - answer.from, 1);
     const auto meet_at = [&](double time) {
@@ -153,7 +153,7 @@ TEST(TrueMotion, OfRigidAndArticulatedBodiesClosesInOnTheTimeOfContact) {
       TrueMotion asked(motion, setup, kDrvbcFastComplete,
                        {.resolution = share / 4, .coarse = 0.05, .narrow = share});
       const TrueAnswer answer = asked.answer(0, 1);
-      ASSERT_EQ(answer.verdict, TrueVerdict::touches) << share;
+      ASSERT_EQ(answer.verdict, IntervalVerdict::touches) << share;
       EXPECT_LE(answer.from, contact) << share;
       EXPECT_GE(answer.to, contact) << share;
       EXPECT_LE(answer.to - answer.from, share);
@@ -187,11 +187,11 @@ TEST(TrueMotion, VerdictsOnRandomTubesAndHandsAreTrue) {
     compare_steps(hand, steps / 6, samples, 18, all);
   }
   std::printf("%d clear, %d touch, %d close, %d undecided; %d cross in some sample\n",
-              all.verdicts[TrueVerdict::clear], all.verdicts[TrueVerdict::touches],
-              all.verdicts[TrueVerdict::close], all.verdicts[TrueVerdict::undecided], all.crossing);
-  EXPECT_GT(all.verdicts[TrueVerdict::clear], steps / 6);
-  EXPECT_GT(all.verdicts[TrueVerdict::touches], steps / 6);
-  EXPECT_LE(all.verdicts[TrueVerdict::close] + all.verdicts[TrueVerdict::undecided], steps / 10);
+              all.verdicts[IntervalVerdict::clear], all.verdicts[IntervalVerdict::touches],
+              all.verdicts[IntervalVerdict::close], all.verdicts[IntervalVerdict::undecided], all.crossing);
+  EXPECT_GT(all.verdicts[IntervalVerdict::clear], steps / 6);
+  EXPECT_GT(all.verdicts[IntervalVerdict::touches], steps / 6);
+  EXPECT_LE(all.verdicts[IntervalVerdict::close] + all.verdicts[IntervalVerdict::undecided], steps / 10);
 }
 
 }  // namespace
