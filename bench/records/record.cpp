@@ -9,7 +9,6 @@
 #include "bench/output/json_text.h"
 #include "bench/output/schema.h"
 #include "core/base/error.h"
-#include "scenes/catalog/plain_name.h"
 
 namespace cscd::bench {
 
@@ -246,13 +245,6 @@ Record parse_record(const std::string& text, const std::string& where) {
       out.scene.effects.push_back({effect.at("name"), effect.at("evaluations"), effect.at("ms")});
     out.scene.path = scene.value("path", "");
     out.thickness = document.value("thickness", 0.0);
-    // Older records have the path in place of the name.
-    if (out.scene.path.empty() && out.thickness == 0 &&
-        (out.scene.name.find('/') != std::string::npos ||
-         std::filesystem::path(out.scene.name).has_extension())) {
-      out.scene.path = out.scene.name;
-      out.scene.name = scenes::plain_name(out.scene.path);
-    }
     out.pipeline = pipeline_named(document.value("pipeline", to_string(Pipeline::vectorised)));
     out.elementary = document.at("elementary");
     out.intervals = document.at("intervals");

@@ -166,13 +166,6 @@ TEST(Record, CallsAFileByAPlainNameBesideItsPath) {
   EXPECT_EQ(read.scene.name, "hand_1");
   EXPECT_EQ(read.scene.path, "/models/hand 1.glb");
   EXPECT_EQ(schema_violation(to_json(record), "run.schema.json"), "");
-
-  nlohmann::ordered_json old = to_json(sample_record());
-  for (const char* name : {"/models/hand 1.glb", "hand 1.glb"}) {  // as older records have it
-    old["scene"]["name"] = name;
-    EXPECT_EQ(parse_record(old.dump(), "test").scene.name, "hand_1");
-    EXPECT_EQ(parse_record(old.dump(), "test").scene.path, name);
-  }
 }
 
 TEST(FilledTables, ShowAnOwnSceneInPlaceOfThePapers) {
