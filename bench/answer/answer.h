@@ -25,8 +25,8 @@ struct IntervalAnswer : StepAnswer {
   // touch that do. `close_at_start` counts those that are close when the interval starts.
   std::map<FeaturePair, double> touching;
   std::size_t close_at_start = 0;
-  // [contacts], the numbers of the events to which they belong (OverlapEvents::Here); empty where none
-  // begins.
+  // [contacts], the numbers of the events to which they belong, because they are between pieces that lie in
+  // each other when the interval starts; OverlapEvents::kNone for new contacts.
   std::vector<std::size_t> event_of_contact;
   // With --new-contacts: what is left out because it lies within events.
   std::size_t old_pairs = 0, old_contacts = 0;

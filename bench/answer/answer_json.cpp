@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/answer/answer_text.h"
+#include "bench/answer/verdict_json.h"
 #include "bench/output/json_text.h"
 #include "core/detect/contact_geometry.h"
 
@@ -236,6 +237,13 @@ json ignored_json(const Input& input) {
 
 }  // namespace
 
+void write_members(JsonStream& out, const json& members) {
+  for (const auto& [key, value] : members.items()) {
+    out.key(key);
+    out.value(value);
+  }
+}
+
 json rest_json(const ClipAnswer& answer) {
   json parts = json::array();
   for (const auto& [pair, count] : pairs_by_part(answer.names, answer.input.mesh, answer.rest))
@@ -270,10 +278,6 @@ json summary_json(const ClipAnswer& answer) {
       {"verdict", to_string(s.verdict())},
       {"sentence", verdict_sentence(answer)},
       {"intervals", s.intervals()},
-      {"clear", s.verdicts[IntervalVerdict::clear]},
-      {"touches", s.verdicts[IntervalVerdict::touches]},
-      {"intersects_at_start", s.verdicts[IntervalVerdict::intersects_at_start]},
-      {"undecided", s.verdicts[IntervalVerdict::undecided]},
       {"proven", s.proven},
       {"ms",
        {{"query", s.query_ms},
@@ -293,11 +297,10 @@ json summary_json(const ClipAnswer& answer) {
       {"old", {{"intervals", s.with_old}, {"start_pairs", s.old_pairs}, {"contacts", s.old_contacts}}},
       {"with_ignored", s.with_ignored},
       {"ignored", std::move(ignored)}};
-  if (answer.input.thickness.length > 0) {
-    out["close"] = s.verdicts[IntervalVerdict::close];
-    out["close_at_start"] = s.close_at_start;
-    out["with_close_at_start"] = s.with_close_at_start;
-  }
+  const bool is_thick = answer.input.thickness.length > 0;
+  out.update(counts_json(s.verdicts, is_thick));
+  if (is_thick)
+    out.update({{"close_at_start", s.close_at_start}, {"with_close_at_start", s.with_close_at_start}});
   if (answer.input.motion) out["true_motion"] = true_motion_json(answer.input, answer.true_motion);
   return out;
 }
@@ -313,10 +316,7 @@ ClipJson::ClipJson(JsonStream& out, const ClipAnswer& answer, const std::string&
                {"input", input}};
   if (answer.input.import) head["import"] = import_json(*answer.input.import);
   out_.begin_object();
-  for (const auto& [key, value] : head.items()) {
-    out_.key(key);
-    out_.value(value);
-  }
+  write_members(out_, head);
   out_.key("intervals");
   out_.begin_array();
 }
@@ -344,10 +344,7 @@ void ClipJson::finish(const ClipAnswer& answer) {
                {"summary", summary_json(answer)},
                {"threads", answer.threads}};
   if (asks_distances(answer.input)) tail["thickness"] = thickness_json(answer);
-  for (const auto& [key, value] : tail.items()) {
-    out_.key(key);
-    out_.value(value);
-  }
+  write_members(out_, tail);
   out_.end();
 }
 

@@ -27,6 +27,9 @@ class ClipJson {
   std::size_t most_start_pairs_;
 };
 
+// Writes members of the object that has begun. All of one object come in the order of their names.
+void write_members(JsonStream& out, const nlohmann::json& members);
+
 // The sums alone.
 nlohmann::json summary_json(const ClipAnswer& answer);
 

@@ -170,12 +170,6 @@ std::string frames_text(const ClipAnswer& answer) {
          frame_text(frame_of(answer.input, {s.last_index, 1}));
 }
 
-const char* verb_of(IntervalVerdict how) {
-  return how == IntervalVerdict::intersects_at_start ? "crosses"
-         : how == IntervalVerdict::close             ? "comes close to"
-                                                     : "touches";
-}
-
 // The predicate of a verdict about straight lines: one class a line.
 std::string verdict_predicate(const ClipAnswer& answer) {
   const Input& input = answer.input;
@@ -185,15 +179,14 @@ std::string verdict_predicate(const ClipAnswer& answer) {
                     cross = s.verdicts[IntervalVerdict::intersects_at_start],
                     undecided = s.verdicts[IntervalVerdict::undecided];
   const std::string apart = apart_text(answer);
-  if (input.is_one_pose) {
-    if (cross > 0)
-      return "crosses itself in its one pose" + apart + ": " + many(s.worst->start_pairs, "pair") +
-             " of triangles, " + meeting_text(s.first->names, "crosses");
-    if (touch > 0)
-      return "touches itself in its one pose" + apart + ": " + meeting_text(s.first->names, "touches");
-    if (close > 0)
-      return "comes within " + input.thickness.asked.thickness.text + " of itself in its one pose" + apart +
-             ": " + meeting_text(s.first->names, "comes close to");
+  if (input.is_one_pose && s.first) {
+    const std::string what = cross > 0 ? "crosses itself"
+                             : touch > 0
+                                 ? "touches itself"
+                                 : "comes within " + input.thickness.asked.thickness.text + " of itself";
+    const std::string pairs =
+        cross > 0 ? many(s.worst->start_pairs, "pair") + " of triangles, " : std::string();
+    return what + " in its one pose" + apart + ": " + pairs + meeting_text(s.first->names, s.first->how);
   }
   if (!collides(s.verdict())) {
     const std::string frames = input.is_one_pose ? " in its one pose" : frames_text(answer);
@@ -218,13 +211,13 @@ std::string verdict_predicate(const ClipAnswer& answer) {
     text += (text.empty() ? "comes within " : " and comes within ") + input.thickness.asked.thickness.text +
             " of itself in " + (text.empty() ? of_intervals(close, s) : std::to_string(close) + " more");
   const AnswerSummary::Meeting& first = *s.first;
-  text += apart + ", first at " + moment_text(input, first.moment) + ": " +
-          meeting_text(first.names, verb_of(first.how));
+  text +=
+      apart + ", first at " + moment_text(input, first.moment) + ": " + meeting_text(first.names, first.how);
   // Of what meets in the first frame, the next time that it meets is news.
   const bool at_start = first.moment.interval == 0 && first.moment.time == 0;
   if (const auto& again = s.first_after_parting; at_start && again)
     text += "; once it had parted, again at " + moment_text(input, again->moment) + ": " +
-            meeting_text(again->names, verb_of(again->how));
+            meeting_text(again->names, again->how);
   return text;
 }
 

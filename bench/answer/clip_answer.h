@@ -101,12 +101,6 @@ struct ClipAnswer {
 
   // The worst verdict of any interval: in its true motion, where that was asked for.
   IntervalVerdict verdict() const { return input.motion ? true_motion.verdict() : summary.verdict(); }
-  // Takes the events of all poses, and the milliseconds that it took to find them.
-  void take(const OverlapEvents& found) {
-    events = found.all();
-    not_measured = found.not_measured();
-    summary.overlap_ms = found.milliseconds();
-  }
 };
 
 // How many triangles of a surface have the same three corners as another one. Two such triangles share all

@@ -135,7 +135,6 @@ void ClipAnswerer::answer_all(const std::string& task, bool with_ways,
       if (s == 0) {
         here = events_->add(answer, interval.motion.start(),
                             {.ways = with_ways, .pieces = request_.new_contacts});
-        answer.event_of_contact = here.event_of_contact;
         if (true_motion_) true_motion_->answer(interval.motion, answer);
       } else {
         share_start(input_, answers.front(), answer);
@@ -163,7 +162,9 @@ void ClipAnswerer::answer_all(const std::string& task, bool with_ways,
   }
   for (ClipAnswer& answer : answers_) {
     if (!input_.is_one_pose) answer.last_pose = last;
-    answer.take(*events_);
+    answer.events = events_->all();
+    answer.not_measured = events_->not_measured();
+    answer.summary.overlap_ms = events_->milliseconds();
   }
   visit({range_.last, resting, {}, here, last.start});
 }

@@ -216,7 +216,11 @@ OverlapEvents::Here OverlapEvents::add(IntervalAnswer& answer, std::span<const V
   }
   if (wanted.pieces || !answer.found.contacts.empty())
     here.pieces = OverlapPieces(input_.mesh, here.overlaps, here.event);
-  assign_contacts(here, answer);
+  for (const Contact& contact : answer.found.contacts) {
+    const std::size_t event = here.pieces.empty() ? kNone : here.pieces.find(input_.mesh, contact.pair);
+    answer.event_of_contact.push_back(event);
+    if (event != kNone) ++events_[event].contacts;
+  }
   std::ranges::sort(vertices);
   std::ranges::sort(going_on);
   vertices_ = std::move(vertices);
@@ -225,18 +229,6 @@ OverlapEvents::Here OverlapEvents::add(IntervalAnswer& answer, std::span<const V
   going_on_ = std::move(going_on);
   milliseconds_ += watch.milliseconds();
   return here;
-}
-
-void OverlapEvents::assign_contacts(Here& here, const IntervalAnswer& answer) {
-  if (here.pieces.empty()) {
-    here.event_of_contact.assign(answer.found.contacts.size(), kNone);
-    return;
-  }
-  for (const Contact& contact : answer.found.contacts) {
-    const std::size_t found = here.pieces.find(input_.mesh, contact.pair);
-    here.event_of_contact.push_back(found);
-    if (found != kNone) ++events_[found].contacts;
-  }
 }
 
 void keep_new(const Input& input, const OverlapPieces& pieces, IntervalAnswer& answer) {

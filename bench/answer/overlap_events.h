@@ -57,9 +57,6 @@ class OverlapEvents {
   struct Here {
     Overlaps overlaps;
     std::vector<std::size_t> event;  // [overlaps.overlaps]; kNone for those that are no events
-    // [answer.found.contacts], the event to which a contact belongs, because it is between pieces that lie in
-    // each other when the interval starts; kNone for new contacts.
-    std::vector<std::size_t> event_of_contact;
     OverlapPieces pieces;  // of each event; only where the answer has contacts, or where they are wanted
   };
   static constexpr std::size_t kNone = OverlapPieces::kNone;
@@ -67,7 +64,8 @@ class OverlapEvents {
     bool ways = false;    // of all vertices, in the regions
     bool pieces = false;  // also where the answer has no contacts
   };
-  // Of the pairs that only touch, those of pieces that cross are counted as crossing from here on.
+  // The answer gets the events of its contacts, and of its pairs that only touch, those of pieces that cross
+  // count as crossing.
   Here add(IntervalAnswer& answer, std::span<const Vec3> start, const Wanted& wanted);
 
   // All events, in the order in which they begin.
@@ -80,7 +78,6 @@ class OverlapEvents {
 
  private:
   void tell_crossing_pieces(std::span<const Vec3> start, Overlaps& all, IntervalAnswer& answer) const;
-  void assign_contacts(Here& here, const IntervalAnswer& answer);
 
   using Mark =
       std::tuple<std::int32_t, std::int32_t, std::size_t>;  // what two numbers stand for, and the event

@@ -28,8 +28,8 @@ std::vector<OverlapEvent> events_of(Input& input, std::size_t& contacts_within, 
   for (std::size_t i = 0; i < input.clip->interval_count(); ++i) {
     IntervalAnswer answer = answerer.answer(i, input.clip->load(i));
     const OverlapEvents::Here here = events.add(answer, input.clip->load(i).motion.start(), {});
-    EXPECT_EQ(here.event_of_contact.size(), answer.found.contacts.size());
-    for (const std::size_t event : here.event_of_contact) contacts_within += event != OverlapEvents::kNone;
+    EXPECT_EQ(answer.event_of_contact.size(), answer.found.contacts.size());
+    for (const std::size_t event : answer.event_of_contact) contacts_within += event != OverlapEvents::kNone;
   }
   return events.all();
 }

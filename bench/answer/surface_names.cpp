@@ -52,6 +52,12 @@ std::string meeting_text(const NamePair& both, const std::string& verb) {
   return both.first + " " + verb + " " + (both.first == both.second ? "itself" : both.second);
 }
 
+std::string meeting_text(const NamePair& both, IntervalVerdict how) {
+  return meeting_text(both, how == IntervalVerdict::intersects_at_start ? "crosses"
+                            : how == IntervalVerdict::close             ? "comes close to"
+                                                                        : "touches");
+}
+
 SurfaceNames::SurfaceNames(const Input& input) : input_(input) {
   const TriangleMesh& mesh = input.mesh;
   const std::vector<std::string> parts =

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bench/answer/verdict_json.h"
 #include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/base/number_text.h"
@@ -75,9 +76,8 @@ std::string first_text(const Input& input, const TrueSummary::Meeting& first) {
     return std::string(digits);
   };
   const TrueAnswer& answer = first.answer;
-  const bool crosses = answer.verdict == IntervalVerdict::intersects_at_start;
   return "at frame " + frame(answer.from) + (answer.to > answer.from ? " to " + frame(answer.to) : "") +
-         " (" + short_text(answer.to) + " s): " + meeting_text(first.names, crosses ? "crosses" : "touches");
+         " (" + short_text(answer.to) + " s): " + meeting_text(first.names, answer.verdict);
 }
 
 }  // namespace
@@ -242,22 +242,19 @@ json true_motion_json(const Input& input, const TrueSummary& s) {
              {"to", at_share(input, s.first->interval, s.first->answer.to)},
              {"first", s.first->names.first},
              {"second", s.first->names.second}};
-  return {{"verdict", to_string(s.verdict())},
-          {"clear", s.verdicts[IntervalVerdict::clear]},
-          {"touches", s.verdicts[IntervalVerdict::touches]},
-          {"close", s.verdicts[IntervalVerdict::close]},
-          {"undecided", s.verdicts[IntervalVerdict::undecided]},
-          {"intersects_at_start", s.verdicts[IntervalVerdict::intersects_at_start]},
-          {"only_true", s.only_true},
-          {"only_straight", s.only_straight},
-          {"first", std::move(first)},
-          {"deviation", s.bounded() > 0 ? json(s.deviation) : json()},
-          {"without_bound", s.without_bound},
-          {"not_asked", s.not_asked},
-          {"parts", s.parts},
-          {"pieces", s.pieces},
-          {"jumps", s.jumps},
-          {"ms", s.ms}};
+  json out = counts_json(s.verdicts, true);
+  out.update({{"verdict", to_string(s.verdict())},
+              {"only_true", s.only_true},
+              {"only_straight", s.only_straight},
+              {"first", std::move(first)},
+              {"deviation", s.bounded() > 0 ? json(s.deviation) : json()},
+              {"without_bound", s.without_bound},
+              {"not_asked", s.not_asked},
+              {"parts", s.parts},
+              {"pieces", s.pieces},
+              {"jumps", s.jumps},
+              {"ms", s.ms}});
+  return out;
 }
 
 }  // namespace cscd::bench

@@ -5,8 +5,8 @@
 #include "bench/command_line/command.h"
 #include "bench/inputs/input.h"
 #include "bench/output/output.h"
+#include "bench/query/view/strategy_observers.h"
 #include "bench/strategies/catalogue.h"
-#include "bench/strategies/strategy_row.h"
 #include "core/base/error.h"
 #include "core/elementary/catalogue.h"
 
@@ -32,16 +32,12 @@ void clusters(const ClusterOptions& options) {
                      " has intervals 0 to " + std::to_string(input.clip->interval_count() - 1) +
                      "; choose one of them");
 
-  const Prepared prepared = strategy->make(
-      setup_for(*strategy, input.setup(elementary_tests().front()), input.clip->interval_count()));
-  if (prepared.preparation.atomic_cluster.empty())
+  StrategyObservers observers(input, *strategy, elementary_tests().front());
+  if (observers.preparation().atomic_cluster.empty())
     throw InputError("strategy " + std::string(strategy->name) + " has no clusters; choose a radial one");
   const scenes::ClipInterval interval = input.clip->load(options.frame);
-  ContactSet ignored;
-  prepared.detector->detect({interval.motion, interval.bones ? &*interval.bones : nullptr}, ignored);
-
-  const RadialView view = prepared.detector->radial_view();
-
+  observers.look(interval);
+  const RadialView view = observers.view();
   nlohmann::json positions = nlohmann::json::array(), triangles = nlohmann::json::array();
   for (const Vec3& x : interval.motion.start()) positions.push_back({x.x(), x.y(), x.z()});
   for (const Triangle& corner : input.mesh.triangles())
@@ -51,7 +47,7 @@ void clusters(const ClusterOptions& options) {
                                    {"input", options.input},
                                    {"strategy", strategy->name},
                                    {"frame", options.frame},
-                                   {"triangle_cluster", prepared.preparation.atomic_cluster},
+                                   {"triangle_cluster", observers.preparation().atomic_cluster},
                                    {"mega_cluster", view.cluster},
                                    {"positive", view.positive},
                                    {"positions", std::move(positions)},

@@ -178,7 +178,9 @@ scenes::Rgb colour_of_depth(float depth, float deepest) {
 // Makes marks of the first strategy's answers.
 class Marker {
  public:
-  explicit Marker(const ClipAnswerer& asked) : input_(asked.input()), observers_(asked.answers().front()) {}
+  explicit Marker(const ClipAnswerer& asked)
+      : input_(asked.input()),
+        observers_(input_, asked.answers().front().strategy, asked.answers().front().elementary) {}
 
   PoseMarks mark(const AnsweredPose& pose) {
     PoseMarks marks;

@@ -12,6 +12,7 @@
 #include "bench/answer/answer_text.h"
 #include "bench/answer/clip_answerer.h"
 #include "bench/answer/options/answer_options.h"
+#include "bench/answer/verdict_json.h"
 #include "bench/command_line/command.h"
 #include "bench/inputs/input.h"
 #include "bench/output/output.h"
@@ -85,53 +86,40 @@ class AllVerdicts {
  public:
   void add(const std::string& clip, IntervalVerdict verdict, const std::vector<std::string>& apart) {
     apart_.insert(apart.begin(), apart.end());
+    counts_.add(verdict);
     names_[verdict].push_back(clip);
     if (verdict == IntervalVerdict::clear) (apart.empty() ? untouched_ : left_out_).push_back(clip);
   }
   void pass_over(const std::string& clip) { still_.push_back(clip); }
-  std::size_t answered() const {
-    std::size_t count = 0;
-    for (const auto& [verdict, names] : names_) count += names.size();
-    return count;
-  }
-  std::string sentence(const std::string& input) const {
+  std::string sentence(const std::string& input) {
     std::string text;
     const auto say = [&](const std::vector<std::string>& names, const char* one, const char* several) {
       if (names.empty()) return;
       text += (text.empty() ? " " : "; ") + std::to_string(names.size()) + " " +
               (names.size() == 1 ? one : several) + " (" + listed_names(names) + ")";
     };
-    say(of(IntervalVerdict::intersects_at_start), "crosses itself at the start of intervals",
+    say(names_[IntervalVerdict::intersects_at_start], "crosses itself at the start of intervals",
         "cross themselves at the start of intervals");
-    say(of(IntervalVerdict::touches), "touches itself", "touch themselves");
-    say(of(IntervalVerdict::close), "comes close to itself", "come close to themselves");
-    say(of(IntervalVerdict::undecided), "may touch itself", "may touch themselves");
+    say(names_[IntervalVerdict::touches], "touches itself", "touch themselves");
+    say(names_[IntervalVerdict::close], "comes close to itself", "come close to themselves");
+    say(names_[IntervalVerdict::undecided], "may touch itself", "may touch themselves");
     say(untouched_, "does not touch itself", "do not touch themselves");
     say(left_out_, "touches itself only in what is left out", "touch themselves only in what is left out");
     say(still_, "is one pose and was passed over", "are one pose and were passed over");
-    const std::size_t count = answered() + still_.size();
+    const std::size_t count = counts_.total() + still_.size();
     if (!apart_.empty()) text += "; all of this apart from ";
     for (const std::string& each : apart_) text += (each == *apart_.begin() ? "" : " and ") + each;
     return short_name(input) + ", " + many(count, "clip") + " in all:" + text + ".";
   }
   // The clips that are close are counted where there is a thickness.
-  json as_json(const std::string& input, bool is_thick) const {
-    json out = {{"sentence", sentence(input)},
-                {"clear", of(IntervalVerdict::clear).size()},
-                {"touches", of(IntervalVerdict::touches).size()},
-                {"intersects_at_start", of(IntervalVerdict::intersects_at_start).size()},
-                {"undecided", of(IntervalVerdict::undecided).size()},
-                {"passed_over", still_.size()}};
-    if (is_thick) out["close"] = of(IntervalVerdict::close).size();
+  json as_json(const std::string& input, bool is_thick) {
+    json out = counts_json(counts_, is_thick);
+    out.update({{"sentence", sentence(input)}, {"passed_over", still_.size()}});
     return out;
   }
 
  private:
-  const std::vector<std::string>& of(IntervalVerdict verdict) const {
-    static const std::vector<std::string> kNone;
-    const auto found = names_.find(verdict);
-    return found == names_.end() ? kNone : found->second;
-  }
+  VerdictCounts counts_;
   std::map<IntervalVerdict, std::vector<std::string>> names_;  // of clips, by their verdicts
   std::vector<std::string> untouched_, left_out_;  // of the clear ones: those without and with exceptions
   std::vector<std::string> still_;
@@ -169,13 +157,10 @@ Said say_all_clips(const QueryOptions& options, Input first, JsonStream* documen
   json import = import_json(seen);
   import["clip"] = nullptr;  // none of them alone
   const bool is_thick = options.thickness.thickness.number > 0 || options.model.true_motion;
-  for (const auto& [key, value] : {std::pair<const char*, json>{"import", std::move(import)},
-                                   {"input", options.input},
-                                   {"schema", kQuerySchema},
-                                   {"summary", verdicts.as_json(options.input, is_thick)}}) {
-    document->key(key);
-    document->value(value);
-  }
+  write_members(*document, {{"import", std::move(import)},
+                            {"input", options.input},
+                            {"schema", kQuerySchema},
+                            {"summary", verdicts.as_json(options.input, is_thick)}});
   document->end();
   return all;
 }

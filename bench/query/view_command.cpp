@@ -54,16 +54,10 @@ json true_moment(const Input& input, const SurfaceNames& names, const IntervalAn
   json out = true_motion_json(input, answer);
   out["interval"] = answer.index - first;
   out["at"] = out[own.parts_again ? "from" : "to"];
-  std::string text = "true motion: ";
-  const bool crosses = own.verdict == IntervalVerdict::intersects_at_start;
-  if (own.pair) {
-    text += meeting_text({names.place_of(own.pair->first), names.place_of(own.pair->second)},
-                         crosses                                   ? "crosses"
-                         : own.verdict == IntervalVerdict::touches ? "touches"
-                                                                   : "comes close to");
-  } else {
-    text += to_string(own.verdict);
-  }
+  std::string text = "true motion: " + std::string(to_string(own.verdict));
+  if (own.pair)
+    text = "true motion: " +
+           meeting_text({names.place_of(own.pair->first), names.place_of(own.pair->second)}, own.verdict);
   const bool lines = answer.verdict != IntervalVerdict::clear;
   if (differs(answer)) text += lines ? ", where straight lines touch" : ", where straight lines do not";
   out["text"] = std::move(text);

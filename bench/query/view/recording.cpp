@@ -64,7 +64,7 @@ void ObserverRecording::write(Sections& sections, const std::string& prefix) con
 }
 
 StrategyRecording::StrategyRecording(const ClipAnswer& answer, const ViewGrid& grid)
-    : answer_(answer), strategy_observers_(answer), grid_(grid) {
+    : answer_(answer), strategy_observers_(answer.input, answer.strategy, answer.elementary), grid_(grid) {
   if (strategy_observers_.preparation().atomic_clusters > std::numeric_limits<std::uint16_t>::max())
     throw InputError("strategy " + std::string(answer_.strategy.name) +
                      ": made more than 65535 clusters, more than a page shows; choose a --component");

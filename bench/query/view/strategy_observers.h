@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/answer/clip_answer.h"
+#include "bench/inputs/input.h"
 #include "bench/strategies/strategy_row.h"
 #include "core/detect/radial_view.h"
 
@@ -10,11 +10,11 @@ namespace cscd::bench {
 // because an Answerer may have another strategy answer.
 class StrategyObservers {
  public:
-  // The input of the answer must outlive it.
-  explicit StrategyObservers(const ClipAnswer& answer)
-      : input_(answer.input),
-        prepared_(answer.strategy.make(
-            setup_for(answer.strategy, input_.setup(answer.elementary), input_.clip->interval_count()))) {}
+  // `input` must outlive it.
+  StrategyObservers(const Input& input, const Strategy& strategy, const ElementaryTest& elementary)
+      : input_(input),
+        prepared_(strategy.make(setup_for(strategy, input.setup(elementary), input.clip->interval_count()))) {
+  }
 
   const Preparation& preparation() const { return prepared_.preparation; }
   // Shows them an interval. Clusters of a strategy that follows the surface are as preparation cut them, the
