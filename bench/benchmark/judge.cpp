@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <numeric>
 #include <set>
+#include <variant>
 
 #include "bench/statistics/statistics.h"
 #include "core/base/error.h"
@@ -27,6 +28,8 @@ class IntervalJudge {
                 std::vector<Fault>& faults)
       : truth_(truth), answer_(answer), tolerance_(tolerance), faults_(faults) {
     for (const TrueContact& contact : truth.contacts) times_.emplace(contact.pair, contact.time);
+    if (answer.contacts)
+      for (const AnsweredContact& contact : *answer.contacts) named_.insert(contact.pair);
   }
 
   Score score() {
@@ -46,6 +49,7 @@ class IntervalJudge {
     }
     if (answer_.milliseconds) score_.milliseconds.push_back(*answer_.milliseconds);
     look_at_start();
+    count_kept();
     if (answer_.collides) {
       score_.collides_told = 1;
       score_.collides_wrong = *answer_.collides != truth_.collides();
@@ -97,11 +101,17 @@ class IntervalJudge {
 
   void count_missed_pairs() {
     score_.expected = truth_.contacts.size();
-    std::set<PairName> named;
-    for (const AnsweredContact& contact : *answer_.contacts) named.insert(contact.pair);
     for (const TrueContact& contact : truth_.contacts)
-      if (!named.contains(contact.pair))
+      if (!named_.contains(contact.pair))
         miss(text(contact.pair) + ", which touches at " + shown(contact.time.lo));
+  }
+
+  // What a complete answer lists, whatever this one claims.
+  void count_kept() {
+    score_.contacts = truth_.contacts.size();
+    score_.kept = static_cast<std::size_t>(std::ranges::count_if(
+        truth_.contacts, [&](const TrueContact& contact) { return named_.contains(contact.pair); }));
+    score_.unpromised = answer_.claim == Claim::none && !truth_.starts_embedded();
   }
 
   void look_for_the_first() {
@@ -157,6 +167,7 @@ class IntervalJudge {
   double tolerance_;
   std::vector<Fault>& faults_;
   std::map<PairName, exact::TimeEnclosure> times_;
+  std::set<PairName> named_;
   Score score_;
 };
 
@@ -214,74 +225,80 @@ std::string brief(double value) {
   return text;
 }
 
+// A row for each number of a score: JSON, sums and columns follow from it.
+constexpr struct {
+  const char* name;                                            // in JSON, and above its column
+  std::variant<std::size_t Score::*, double Score::*> member;  // a count, or the largest of an error
+  bool is_column = false;
+} kScoreRows[] = {{"intervals", &Score::intervals},
+                  {"answered", &Score::answered},
+                  {"expected", &Score::expected, true},
+                  {"misses", &Score::misses, true},
+                  {"inventions", &Score::inventions, true},
+                  {"undecided", &Score::undecided, true},
+                  {"broken", &Score::broken, true},
+                  {"timed", &Score::timed},
+                  {"late", &Score::late, true},
+                  {"latest", &Score::latest, true},
+                  {"early", &Score::early, true},
+                  {"earliest", &Score::earliest, true},
+                  {"starts_told", &Score::starts_told},
+                  {"starts_wrong", &Score::starts_wrong},
+                  {"start_pairs_missed", &Score::start_pairs_missed},
+                  {"start_pairs_invented", &Score::start_pairs_invented},
+                  {"collides_told", &Score::collides_told},
+                  {"collides_wrong", &Score::collides_wrong},
+                  {"contacts", &Score::contacts},
+                  {"kept", &Score::kept},
+                  {"unpromised", &Score::unpromised}};
+
+double sum_of(const std::vector<double>& samples) {
+  return std::accumulate(samples.begin(), samples.end(), 0.0);
+}
+
 ordered_json score_json(const Score& score) {
-  ordered_json out = {{"intervals", score.intervals},
-                      {"answered", score.answered},
-                      {"broken", score.broken},
-                      {"expected", score.expected},
-                      {"misses", score.misses},
-                      {"inventions", score.inventions},
-                      {"undecided", score.undecided},
-                      {"timed", score.timed},
-                      {"late", score.late},
-                      {"early", score.early},
-                      {"latest", score.latest},
-                      {"earliest", score.earliest},
-                      {"starts_told", score.starts_told},
-                      {"starts_wrong", score.starts_wrong},
-                      {"start_pairs_missed", score.start_pairs_missed},
-                      {"start_pairs_invented", score.start_pairs_invented},
-                      {"collides_told", score.collides_told},
-                      {"collides_wrong", score.collides_wrong}};
+  ordered_json out;
+  for (const auto& row : kScoreRows)
+    std::visit([&](const auto& member) { out[row.name] = score.*member; }, row.member);
+  if (is_short(score.shortfall())) out["shortfall"] = shortfall_text(score.shortfall());
   if (!score.milliseconds.empty())
-    out["milliseconds"] = {
-        {"answers", score.milliseconds.size()},
-        {"median", median(score.milliseconds)},
-        {"sum", std::accumulate(score.milliseconds.begin(), score.milliseconds.end(), 0.0)}};
+    out["milliseconds"] = {{"answers", score.milliseconds.size()},
+                           {"median", median(score.milliseconds)},
+                           {"sum", sum_of(score.milliseconds)}};
   return out;
 }
 
 std::vector<std::string> cells(const std::string& name, const Score& score) {
-  const auto count = [](std::size_t n) { return std::to_string(n); };
-  const bool has_times = !score.milliseconds.empty();
-  return {
-      name,
-      count(score.answered) + " of " + count(score.intervals),
-      count(score.expected),
-      count(score.misses),
-      count(score.inventions),
-      count(score.undecided),
-      count(score.broken),
-      count(score.late),
-      brief(score.latest),
-      count(score.early),
-      brief(score.earliest),
-      score.starts_told == 0 ? "-" : count(score.starts_wrong) + " of " + count(score.starts_told),
-      has_times ? brief(median(score.milliseconds)) : "-",
-      has_times ? brief(std::accumulate(score.milliseconds.begin(), score.milliseconds.end(), 0.0)) : "-"};
+  std::vector<std::string> out = {name,
+                                  std::to_string(score.answered) + " of " + std::to_string(score.intervals)};
+  const auto shown_as = [](const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
+      return brief(value);
+    else
+      return std::to_string(value);
+  };
+  for (const auto& row : kScoreRows)
+    if (row.is_column)
+      std::visit([&](const auto& member) { out.push_back(shown_as(score.*member)); }, row.member);
+  out.push_back(score.starts_told == 0
+                    ? "-"
+                    : std::to_string(score.starts_wrong) + " of " + std::to_string(score.starts_told));
+  const std::string mark(is_short(score.shortfall()) ? kShortfallMark : "");
+  for (const auto statistic : {+[](const std::vector<double>& ms) { return median(ms); }, sum_of})
+    out.push_back(score.milliseconds.empty() ? "-" : brief(statistic(score.milliseconds)) + mark);
+  return out;
 }
 
 }  // namespace
 
 void Score::add(const Score& other) {
-  intervals += other.intervals;
-  answered += other.answered;
-  broken += other.broken;
-  expected += other.expected;
-  misses += other.misses;
-  inventions += other.inventions;
-  undecided += other.undecided;
-  timed += other.timed;
-  late += other.late;
-  early += other.early;
-  latest = std::max(latest, other.latest);
-  earliest = std::max(earliest, other.earliest);
-  starts_told += other.starts_told;
-  starts_wrong += other.starts_wrong;
-  start_pairs_missed += other.start_pairs_missed;
-  start_pairs_invented += other.start_pairs_invented;
-  collides_told += other.collides_told;
-  collides_wrong += other.collides_wrong;
+  for (const auto& row : kScoreRows) {
+    if (const auto* const count = std::get_if<std::size_t Score::*>(&row.member))
+      this->** count += other.**count;
+    else
+      this->*std::get<double Score::*>(row.member) = std::max(this->*std::get<double Score::*>(row.member),
+                                                              other.*std::get<double Score::*>(row.member));
+  }
   milliseconds.insert(milliseconds.end(), other.milliseconds.begin(), other.milliseconds.end());
 }
 
@@ -362,7 +379,7 @@ ordered_json to_json(const Judgement& judgement) {
   for (const std::string& family : judgement.family_order)
     families[family] = score_json(judgement.families.at(family));
   for (const Fault& fault : judgement.faults) faults.push_back({{"id", fault.id}, {"what", fault.what}});
-  return {{"schema", "cscd.score/1"},
+  return {{"schema", "cscd.score/2"},
           {"program", judgement.program},
           {"version", judgement.version},
           {"benchmark", judgement.benchmark},
@@ -376,21 +393,24 @@ ordered_json to_json(const Judgement& judgement) {
 }
 
 std::string describe(const Judgement& judgement, bool by_family) {
-  static const std::vector<std::string> kHead = {
-      "",     "answered", "expected", "misses",   "inventions",   "undecided", "broken",
-      "late", "latest",   "early",    "earliest", "starts wrong", "median ms", "sum of ms"};
+  std::vector<std::string> head = {"", "answered"};
+  for (const auto& row : kScoreRows)
+    if (row.is_column) head.emplace_back(row.name);
+  head.insert(head.end(), {"starts wrong", "median ms", "sum of ms"});
   std::vector<std::vector<std::string>> rows;
-  if (by_family) {
-    for (const std::string& family : judgement.family_order)
-      rows.push_back(cells(family, judgement.families.at(family)));
-  } else {
-    for (const std::string& set : judgement.set_order) rows.push_back(cells(set, judgement.set(set)));
-  }
-  rows.push_back(cells("all", judgement.all()));
+  std::string marked;
+  const auto add = [&](const std::string& name, const Score& score) {
+    rows.push_back(cells(name, score));
+    if (!score.milliseconds.empty() && is_short(score.shortfall()))
+      marked += "- " + name + ": " + shortfall_text(score.shortfall()) + "\n";
+  };
+  for (const std::string& name : by_family ? judgement.family_order : judgement.set_order)
+    add(name, by_family ? judgement.families.at(name) : judgement.set(name));
+  add("all", judgement.all());
 
   std::vector<std::size_t> width;
-  for (std::size_t column = 0; column < kHead.size(); ++column) {
-    width.push_back(kHead[column].size());
+  for (std::size_t column = 0; column < head.size(); ++column) {
+    width.push_back(head[column].size());
     for (const auto& row : rows) width[column] = std::max(width[column], row[column].size());
   }
   const auto line = [&](const std::vector<std::string>& row) {
@@ -400,8 +420,9 @@ std::string describe(const Judgement& judgement, bool by_family) {
     return out + "\n";
   };
   std::string out =
-      judgement.program + (judgement.version.empty() ? "" : " " + judgement.version) + "\n" + line(kHead);
+      judgement.program + (judgement.version.empty() ? "" : " " + judgement.version) + "\n" + line(head);
   for (const auto& row : rows) out += line(row);
+  if (!marked.empty()) out += shortfall_meaning() + ".\n" + marked;
   constexpr std::size_t kShown = 10;
   for (std::size_t i = 0; i < std::min(kShown, judgement.faults.size()); ++i)
     out += judgement.faults[i].id + " " + judgement.faults[i].what + "\n";

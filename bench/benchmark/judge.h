@@ -8,6 +8,7 @@
 
 #include "bench/benchmark/benchmark.h"
 #include "bench/benchmark/benchmark_answers.h"
+#include "bench/records/shortfall.h"
 
 namespace cscd::bench {
 
@@ -15,18 +16,22 @@ namespace cscd::bench {
 struct Score {
   std::size_t intervals = 0;  // of the benchmark
   std::size_t answered = 0;
-  std::size_t broken = 0;    // answers that claim something and miss
   std::size_t expected = 0;  // what could be missed: contacts, or one for each interval that touches
   std::size_t misses = 0, inventions = 0, undecided = 0;
-  std::size_t timed = 0;  // contacts of the truth whose time was given
+  std::size_t broken = 0;  // answers that claim something and miss
+  std::size_t timed = 0;   // contacts of the truth whose time was given
   std::size_t late = 0, early = 0;
   double latest = 0, earliest = 0;  // the largest errors of each kind, in intervals
   std::size_t starts_told = 0, starts_wrong = 0;
   std::size_t start_pairs_missed = 0, start_pairs_invented = 0;
   std::size_t collides_told = 0, collides_wrong = 0;
+  // Of the truth, in intervals that were answered, and those of them that an answer lists.
+  std::size_t contacts = 0, kept = 0;
+  std::size_t unpromised = 0;        // answers that claim nothing, from a start that is not embedded
   std::vector<double> milliseconds;  // of the answers that give them
 
   void add(const Score& other);
+  Shortfall shortfall() const { return {contacts, kept, answered, unpromised}; }
 };
 
 // A miss, an invention, a wrong time or a wrong word about a start, in a line for people.

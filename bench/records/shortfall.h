@@ -34,6 +34,9 @@ std::string shortfall_text(const Shortfall& lacking);
 // Whether rows of a guarantee, by its name, promise something only from an embedded start.
 bool needs_embedded_start(const std::string& guarantee);
 
+// What the mark stands for, without the full stop.
+std::string shortfall_meaning();
+
 // The footnote to all marks of these records, one line for each scene; empty where there is no mark.
 std::string shortfall_note(std::span<const Record> records);
 

@@ -9,6 +9,7 @@ from Debian's packages, and takes a quarter of an hour on 2 idle cores when ever
 
 from markdown import built, number, table
 from records import read_json
+from scale_record import MARK
 from script import ROOT, call, measured_program, new_results, output_of, parser_of
 
 # A strategy, or a strategy and an elementary test. Strategies differ in what they cull, and the tests in what they decide.
@@ -19,10 +20,10 @@ HEAD = ["answered", "expected", "misses", "inventions", "undecided", "broken", "
 
 
 def counts(score):
-    ms = score.get("milliseconds")
+    ms, mark = score.get("milliseconds"), MARK if "shortfall" in score else ""
     return [f"{score['answered']} of {score['intervals']}", *(str(score[key]) for key in ("expected", "misses", "inventions")),
             str(score["undecided"]), str(score["broken"]), str(score["late"]), number(score["latest"]), str(score["early"]),
-            number(score["earliest"]), number(ms and ms["median"]), number(ms and ms["sum"])]
+            number(score["earliest"]), *(number(ms and ms[key]) + (mark if ms else "") for key in ("median", "sum"))]
 
 
 def page(scores):
@@ -40,6 +41,10 @@ def page(scores):
     for name in first["sets"]:
         lines += ["", f"## {name.capitalize()}", ""]
         lines += table(["entry", *HEAD], [[f"`{entry(score)}`", *counts(score["sets"][name])] for score in scores])
+    lacking = [f"- `{entry(score)}`: {score['all']['shortfall']}" for score in scores if "shortfall" in score["all"]]
+    if lacking:
+        lines += ["", f"## What {MARK} stands for", "", f"{MARK} The answers lack some that complete ones have, so their time is not for the same work. Of all "
+                  "intervals:", "", *lacking]
     return "\n".join(lines) + "\n"
 
 
