@@ -4,9 +4,11 @@
 #include <limits>
 #include <memory>
 
+#include "bench/harness/interval_source.h"
+#include "bench/harness/measurement.h"
 #include "bench/records/environment.h"
 #include "bench/statistics/statistics.h"
-#include "bench/strategies/strategy_row.h"
+#include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/fast/drvbc_fast.h"
 
@@ -15,59 +17,85 @@ namespace {
 
 constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
+Input input_of(const scenes::PosedMesh& posed) {
+  const auto load = [&posed](std::size_t i) {
+    const scenes::PosedMesh::Interval& own = posed.intervals[i];
+    scenes::ClipInterval out{Motion(own.start.positions, own.end.positions), std::nullopt};
+    if (!posed.bone_parent.empty()) out.bones = Rig::Interval{own.start.bones, own.end.bones};
+    return out;
+  };
+  const std::size_t vertices = posed.reference.positions.size();
+  Input input{
+      "an interval",
+      std::make_unique<IntervalSource>(scenes::ClipHeader{posed.triangles, vertices, posed.bone_parent},
+                                       posed.intervals.size(), load),
+      TriangleMesh(posed.triangles, vertices), posed.reference.positions, std::nullopt};
+  if (!posed.bone_parent.empty()) input.rig.emplace(Rig{posed.bone_parent, posed.reference.bones});
+  return input;
+}
+
 // A mesh of the benchmark, and the strategy made for it.
 class Asked {
  public:
   Asked(const scenes::PosedMesh& posed, const StrategyRow& row, const ElementaryTest& elementary)
-      : posed_(posed), row_(row), mesh_(posed.triangles, posed.reference.positions.size()) {
-    if (!posed.bone_parent.empty()) rig_.emplace(Rig{posed.bone_parent, posed.reference.bones});
+      : row_(row), elementary_(elementary), input_(input_of(posed)) {
     // One reason for all surfaces that are not closed; why_not() names the defect of each.
-    if (row.strategy->needs != Needs::any_mesh && !mesh_.closed_and_oriented())
+    if (row.strategy->needs != Needs::any_mesh && !input_.mesh.closed_and_oriented())
       throw InputError("needs a closed, consistently oriented surface");
-    if (const auto reason = why_not(*row.strategy, mesh_, rig_.has_value())) throw InputError(*reason);
-    const StrategyInput setup{mesh_,    posed.reference.positions, rig_ ? &*rig_ : nullptr, elementary, 1,
-                              row.first};
-    detector_ = row.strategy->make(setup).detector;
+    if (const auto reason = why_not(*row.strategy, input_.mesh, input_.rig.has_value()))
+      throw InputError(*reason);
+    contestants_.push_back(make_contestant(input_, row, judging(), elementary));
     // These promises need to know the start, and these strategies do not see it themselves.
     if (needs_embedded_start(row.strategy->guarantee))
-      embedding_ = std::make_unique<EmbeddingTest>(make_embedding_test(setup));
+      embedding_ = std::make_unique<EmbeddingTest>(
+          make_embedding_test(measured_setup(input_, *row.strategy, elementary)));
   }
 
-  IntervalAnswers answer(std::size_t row, int repetitions) {
-    const scenes::PosedMesh::Interval& own = posed_.intervals[row];
-    const Motion motion(own.start.positions, own.end.positions);
-    const Rig::Interval both{own.start.bones, own.end.bones};
-    const Rig::Interval* const bones = rig_ ? &both : nullptr;
+  IntervalAnswers answer(std::size_t row, const std::string& id, std::size_t repetitions,
+                         std::vector<std::string>& failures) {
     IntervalAnswers out;
-    ContactSet found;
-    std::vector<double> milliseconds;
-    // Intervals of a scene do not follow each other, and each repetition answers as the first.
-    for (int i = 0; i < repetitions; ++i) {
-      detector_->forget();
-      milliseconds.push_back(detector_->detect({motion, bones}, found).ms.total());
+    out.id = id;
+    // Intervals of a mesh do not follow each other, so none leads up to another.
+    const std::vector<IntervalRange> alone(input_.clip->interval_count(), IntervalRange{0, 0});
+    Measurement measurement(
+        {input_, contestants_, judging(), elementary_, alone, [&](std::size_t) { return id; }});
+    const SectionResult& result =
+        measurement.verify({{row}, {row}, {row}}, [&](std::size_t, std::size_t, const ContactSet& found) {
+          out.contacts.emplace();
+          for (const Contact& contact : found.contacts)
+            out.contacts->push_back(
+                {PairName::of(input_.mesh, contact.pair),
+                 contact.verdict == Verdict::contact ? std::optional(contact.time) : std::nullopt});
+        });
+    std::mt19937_64 order;
+    measurement.time({repetitions, order});
+    const VerificationRecord& verified = result.verification;
+    if (verified.ok()) {
+      std::vector<double> times;
+      for (const std::vector<double>& query : query_times(result.rows[0].ms)) times.push_back(query.front());
+      out.milliseconds = median(times);
     }
-    found.sort();
-    if (row_.first) keep_first(found);
-    out.milliseconds = median(milliseconds);
-    out.contacts.emplace();
-    for (const Contact& contact : found.contacts)
-      out.contacts->push_back({PairName::of(mesh_, contact.pair), contact.verdict == Verdict::contact
-                                                                      ? std::optional(contact.time)
-                                                                      : std::nullopt});
-    see_start(motion, bones, out);
+    for (const std::string& failure : verified.strategies[0].failures) failures.push_back(failure);
+    see_start(row, out);
     out.claim = claim(out.starts_embedded.value_or(false));
     return out;
   }
 
  private:
-  void see_start(const Motion& motion, const Rig::Interval* bones, IntervalAnswers& out) {
+  // Right in every case, and quick enough to judge every interval.
+  static const ElementaryTest& judging() { return elementary_test_named("filtered_exact"); }
+
+  void see_start(std::size_t row, IntervalAnswers& out) {
+    const scenes::ClipInterval interval = input_.clip->load(row);
     Crossings start;
     if (row_.strategy->sees_start) {
       ContactSet ignored;
-      detector_->detect({.motion = motion, .bones = bones, .crossings = &start, .most_crossings = kNoLimit},
-                        ignored);
+      Step step = input_.step(interval);
+      step.crossings = &start;
+      step.most_crossings = kNoLimit;
+      contestants_[0].timed->detect(step, ignored);
     } else if (embedding_) {
-      start = embedding_->find_all(motion.start(), kNoLimit);
+      start = embedding_->find_all(interval.motion.start(), kNoLimit);
     } else {
       return;
     }
@@ -90,18 +118,17 @@ class Asked {
     return Claim::none;
   }
 
-  const scenes::PosedMesh& posed_;
   const StrategyRow& row_;
-  TriangleMesh mesh_;
-  std::optional<Rig> rig_;
-  std::unique_ptr<Detector> detector_;
+  const ElementaryTest& elementary_;
+  Input input_;
+  std::vector<Contestant> contestants_;
   std::unique_ptr<EmbeddingTest> embedding_;
 };
 
 }  // namespace
 
 Entry answer_benchmark(const Benchmark& benchmark, const StrategyRow& row, const ElementaryTest& elementary,
-                       int repetitions, const std::function<void(std::size_t)>& progress) {
+                       std::size_t repetitions, const std::function<void(std::size_t)>& progress) {
   Entry entry;
   const nlohmann::ordered_json here = environment();
   entry.answers.program = "cscd " + row.name();
@@ -122,8 +149,8 @@ Entry answer_benchmark(const Benchmark& benchmark, const StrategyRow& row, const
       // A package that refuses positions throws whatever it likes.
       try {
         if (!asked) asked.emplace(posed, row, elementary);
-        answers[i] = asked->answer(benchmark.intervals[i].row, repetitions);
-        answers[i]->id = benchmark.intervals[i].id;
+        const ListedInterval& listed = benchmark.intervals[i];
+        answers[i] = asked->answer(listed.row, listed.id, repetitions, entry.failures);
       } catch (const std::bad_alloc&) {
         throw;
       } catch (const std::exception& error) {

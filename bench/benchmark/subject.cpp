@@ -218,13 +218,6 @@ Tetrahedra around(const Query& query, hard::Kind kind) {
   return out;
 }
 
-std::vector<std::size_t> spread(std::size_t count, std::size_t over) {
-  count = std::min(count, over);
-  std::vector<std::size_t> out;
-  for (std::size_t k = 0; k < count; ++k) out.push_back((2 * k + 1) * over / (2 * count));
-  return out;
-}
-
 }  // namespace
 
 std::span<const ShapeFamily> shape_families() {

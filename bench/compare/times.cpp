@@ -15,7 +15,6 @@ namespace cscd::bench {
 
 namespace {
 
-constexpr std::string_view kQueryStages[] = {"refit", "rv_update", "traversal", "elementary"};
 constexpr std::string_view kPreparation = "preparation";
 // What it takes to know what crosses at the start, outside of the query: a test of its own, or the look of a
 // row that sees it.

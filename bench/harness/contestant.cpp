@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "bench/harness/footprint.h"
 #include "bench/inputs/thickness.h"
 #include "bench/output/progress.h"
 #include "bench/strategies/catalogue.h"
 #include "bench/strategies/strategy_row.h"
 #include "core/base/error.h"
+#include "core/base/stopwatch.h"
 
 namespace cscd::bench {
 namespace {
@@ -38,23 +40,43 @@ std::optional<std::string> why_not_ignoring(const Input& input, const Strategy& 
   return std::nullopt;
 }
 
-std::vector<Contestant> make_contestants(const Input& input, std::span<const StrategyRow> rows,
-                                         const ElementaryTest& exact, const ElementaryTest& timed) {
-  Progress progress("preparing " + input.name, 2 * rows.size());
+Contestant make_contestant(Input& input, const StrategyRow& row, const ElementaryTest& exact,
+                           const ElementaryTest& timed, std::optional<std::size_t> interval) {
+  Contestant contestant{.row = row, .judged = nullptr, .timed = nullptr, .preparation = {}};
+  const auto made = [&](const ElementaryTest& test) -> std::shared_ptr<Detector> {
+    Prepared prepared =
+        row.strategy->make(measured_setup(input, *row.strategy, test, row.first, row.pipeline));
+    add(prepared.preparation, contestant.preparation);
+    contestant.threads = prepared.preparation.threads;
+    return std::move(prepared.detector);
+  };
+  if (&exact != &timed) contestant.judged = made(exact);
+  std::optional<scenes::ClipInterval> asked;
+  std::optional<MemoryWatch> memory;
+  if (interval) {
+    asked = input.clip->load(*interval);  // the source's own buffers are not the strategy's
+    memory.emplace();
+  }
+  const Stopwatch making;
+  contestant.timed = made(timed);
+  contestant.make_ms = making.milliseconds();
+  if (memory) {
+    ContactSet found;
+    for (int time = 0; time < 2; ++time) contestant.timed->detect(input.step(*asked), found);
+    contestant.footprint = memory->footprint();
+  }
+  if (!contestant.judged) contestant.judged = contestant.timed;
+  return contestant;
+}
+
+std::vector<Contestant> make_contestants(Input& input, std::span<const StrategyRow> rows,
+                                         const ElementaryTest& exact, const ElementaryTest& timed,
+                                         std::optional<std::size_t> interval) {
+  Progress progress("preparing " + input.name, rows.size());
   std::vector<Contestant> contestants;
   for (const StrategyRow& row : rows) {
-    Contestant& contestant = contestants.emplace_back();
-    contestant.row = row;
-    const auto make = [&](const ElementaryTest& test) {
-      Prepared prepared =
-          row.strategy->make(measured_setup(input, *row.strategy, test, row.first, row.pipeline));
-      add(prepared.preparation, contestant.preparation);
-      contestant.threads = prepared.preparation.threads;
-      progress.advance();
-      return std::move(prepared.detector);
-    };
-    contestant.judged = make(exact);
-    contestant.timed = make(timed);
+    contestants.push_back(make_contestant(input, row, exact, timed, interval));
+    progress.advance();
   }
   return contestants;
 }
@@ -95,14 +117,20 @@ std::vector<StrategyRow> chosen_rows(const Input& input, std::span<const std::st
   return chosen;
 }
 
-void lead_up(const Strategy& strategy, Detector& detector, Input& input, std::size_t interval) {
+void lead_up(const Strategy& strategy, Detector& detector, Input& input, const IntervalRange& lead) {
   if (strategy.kind != StrategyKind::adaptive) return;
   detector.forget();
   ContactSet ignored;
-  for (std::size_t i = interval - std::min(interval, kLead); i < interval; ++i) {
+  for (std::size_t i = lead.first; i < lead.last; ++i) {
     const scenes::ClipInterval before = input.clip->load(i);
     detector.detect(input.step(before), ignored);
   }
+}
+
+void ask(Detector& detector, const StrategyRow& row, const Step& step, Answered& out) {
+  out.report = detector.detect(step, out.found);
+  out.found.sort();
+  if (row.first) keep_first(out.found);
 }
 
 }  // namespace cscd::bench

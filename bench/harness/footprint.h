@@ -1,25 +1,37 @@
 #pragma once
 
-#include <span>
+#include <cstdint>
+#include <optional>
 
-#include "bench/inputs/input.h"
 #include "bench/records/record.h"
-#include "bench/strategies/strategy_row.h"
-#include "core/detect/strategy.h"
 
 namespace cscd::bench {
 
-// A strategy made and measured while it was made and answered one interval twice.
-struct Made {
-  Prepared prepared;
-  Footprint footprint;  // without instructions
-  double make_ms = 0;   // before it answered
-};
-Made make_measured(Input& input, const StrategyRow& row, const ElementaryTest& elementary,
-                   std::size_t interval);
+// Watches the resident memory of this process, beginning without what was freed before.
+class MemoryWatch {
+ public:
+  MemoryWatch();
+  // What came on top since then: at its peak, and now. It has no instructions.
+  Footprint footprint() const;
 
-// Makes the strategy anew and runs it on the intervals, of which there is at least one.
-Footprint measure_footprint(Input& input, const StrategyRow& row, const ElementaryTest& elementary,
-                            std::span<const std::size_t> intervals);
+ private:
+  bool peak_is_ours_;
+  std::optional<std::uint64_t> resident_;
+};
+
+// A hardware counter of the instructions of this thread.
+class InstructionCounter {
+ public:
+  InstructionCounter();
+  ~InstructionCounter();
+  InstructionCounter(const InstructionCounter&) = delete;
+  InstructionCounter& operator=(const InstructionCounter&) = delete;
+
+  // Nothing where the machine does not count them.
+  std::optional<std::uint64_t> so_far() const;
+
+ private:
+  int descriptor_;
+};
 
 }  // namespace cscd::bench

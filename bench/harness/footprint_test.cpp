@@ -1,10 +1,8 @@
-#include "bench/harness/footprint.h"
-
-#include <array>
 #include <gtest/gtest.h>
 #include <memory>
 #include <vector>
 
+#include "bench/harness/contestant.h"
 #include "bench/strategies/catalogue.h"
 #include "scenes/clip/clip.h"
 
@@ -50,9 +48,8 @@ TEST(Footprint, SeesPeakAndHeldMemory) {
 
   const Strategy hoarder{"hoarder",           "a test",    Guarantee::heuristic, Needs::any_mesh,
                          StrategyKind::fixed, make_hoarder};
-  const std::array<std::size_t, 1> intervals{0};
-  const Footprint footprint =
-      measure_footprint(input, {&hoarder}, elementary_test_named("newton"), intervals);
+  const ElementaryTest& test = elementary_test_named("newton");
+  const Footprint footprint = make_contestant(input, {&hoarder}, test, test, 0).footprint;
   constexpr double mebibyte = 1 << 20;
   if (!footprint.peak_bytes || !footprint.held_bytes) GTEST_SKIP() << "the kernel does not say";
   EXPECT_NEAR(static_cast<double>(*footprint.held_bytes) / mebibyte, 64, 8);

@@ -12,6 +12,13 @@ std::vector<std::size_t> every_kth(const IntervalRange& range, std::size_t k) {
   return intervals;
 }
 
+std::vector<std::size_t> spread(std::size_t count, std::size_t over) {
+  count = std::min(count, over);
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; k < count; ++k) out.push_back((2 * k + 1) * over / (2 * count));
+  return out;
+}
+
 std::vector<std::size_t> intervals_with_contacts(Input& input, Detector& detector,
                                                  const IntervalRange& range) {
   std::vector<std::size_t> touching;
@@ -30,8 +37,7 @@ std::vector<std::size_t> with_contacts(std::span<const std::size_t> chosen,
   std::ranges::set_difference(touching, chosen, std::back_inserter(others));
   const std::size_t there = touching.size() - others.size();
   const std::size_t missing = std::min(count > there ? count - there : 0, others.size());
-  for (std::size_t k = 0; k < missing; ++k)
-    all.push_back(others[(2 * k + 1) * others.size() / (2 * missing)]);
+  for (const std::size_t place : spread(missing, others.size())) all.push_back(others[place]);
   std::ranges::sort(all);
   return all;
 }

@@ -12,6 +12,9 @@ namespace cscd::bench {
 // Every K-th interval of a range, from its first.
 std::vector<std::size_t> every_kth(const IntervalRange& range, std::size_t k);
 
+// So many of the first `over` numbers, or all of them, spread evenly.
+std::vector<std::size_t> spread(std::size_t count, std::size_t over);
+
 // All intervals of the range on which the detector finds a contact, ascending.
 std::vector<std::size_t> intervals_with_contacts(Input& input, Detector& detector,
                                                  const IntervalRange& range);

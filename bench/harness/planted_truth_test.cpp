@@ -39,16 +39,15 @@ Record record_of(std::uint64_t seed, Prepared (*make)(const StrategyInput&), boo
                           Needs::any_mesh, StrategyKind::fixed, make};
   const std::array rows = {StrategyRow{&strategy}};
   Trial trial(random_input(seed), rows, exact, exact);
-  if (is_verified) trial.judge();
-  trial.count();
+  SectionResult& result = is_verified ? trial.verify() : trial.count();
   Record record;
   record.scene.name = "random";
   record.elementary = exact.name;
   record.counted_intervals = trial.all;
-  record.strategies = std::move(trial.records);
+  record.strategies = std::move(result.rows);
   record.strategies[0].name = strategy.name;
   record.strategies[0].guarantee = to_string(strategy.guarantee);
-  record.verification = trial.verifier.record();
+  record.verification = result.verification;
   return record;
 }
 

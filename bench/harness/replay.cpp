@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <random>
 
 #include "bench/harness/contestant.h"
-#include "bench/harness/footprint.h"
 #include "bench/harness/interval_choice.h"
-#include "bench/harness/timing.h"
-#include "bench/harness/verification.h"
+#include "bench/harness/measurement.h"
 #include "bench/records/environment.h"
 #include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
@@ -84,17 +83,6 @@ SceneRecord describe(Input& input) {
   return record;
 }
 
-StrategyRecord describe(const Contestant& contestant) {
-  StrategyRecord record;
-  record.name = contestant.row.name();
-  record.source = contestant.row.strategy->source;
-  record.guarantee = to_string(contestant.row.strategy->guarantee);
-  record.threads = contestant.threads;
-  if (contestant.row.strategy->kind == StrategyKind::adaptive) record.lead = kLead;
-  record.preparation = contestant.preparation;
-  return record;
-}
-
 void leave_out_what_varies(Record& record) {
   record.environment = build_environment();
   record.scene.effects.clear();
@@ -117,31 +105,6 @@ std::vector<std::size_t> intervals_to_time(Input& input, const IntervalRange& ra
                        request.time_contacts);
 }
 
-// Judges and counts the contestants, times them where intervals are to be timed, and keeps what came of it in
-// the record's strategies. Times are missing where a strategy failed.
-VerificationRecord verified_and_timed(Input& input, std::span<Contestant> contestants,
-                                      const ElementaryTest& exact, const ElementaryTest& timed,
-                                      const Replay& replay, Record& record) {
-  Verifier verifier(input, contestants, exact, timed);
-  verifier.judge(replay.intervals.verified);
-  if (!verifier.record().ok()) return verifier.record();
-  const WarmUp counted = warm_up(input, contestants, record.counted_intervals, verifier, record.strategies);
-  verifier.judge(counted.disagreeing);
-  std::optional<Unrepeatable> void_times = counted.unrepeatable;
-  if (!replay.intervals.timed.empty() && !void_times && verifier.record().ok()) {
-    const TimingPlan plan{record.timed_intervals, replay.request.repetitions, replay.request.seed};
-    void_times = time_contestants(input, contestants, plan, verifier, counted, record.strategies);
-    for (std::size_t c = 0; c < contestants.size(); ++c)
-      record.strategies[c].footprint =
-          measure_footprint(input, contestants[c].row, timed, record.timed_intervals);
-  }
-  VerificationRecord verified = verifier.record();
-  verified.disagreeing = counted.disagreeing;
-  verified.excused = counted.excused;
-  if (void_times) verified.strategies[void_times->contestant].failures.push_back(void_times->failure);
-  return verified;
-}
-
 }  // namespace
 
 void require_sound(const ReplayRequest& request) {
@@ -153,7 +116,7 @@ void require_sound(const ReplayRequest& request) {
 }
 
 Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
-  Replay replay{kind, asked, {}, {}};
+  Replay replay{kind, asked, {}, {}, {}};
   ReplayRequest& request = replay.request;
   IntervalRange range = parse_frames(request.frames, input);
   if (request.smoke) {
@@ -176,12 +139,12 @@ Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
                      " allows none of these; name others (cscd list strategies)");
   replay.command = command_line(request, input);
 
-  ChosenIntervals& intervals = replay.intervals;
-  intervals.range = range;
-  if (kind == ReplayKind::timings) intervals.timed = intervals_to_time(input, range, request);
-  // Whatever is timed is verified.
-  intervals.verified = united(std::vector{every_kth(range, request.verify_every), intervals.timed});
-  intervals.counted = united(std::vector{every_kth(range, request.count_every), intervals.verified});
+  replay.range = range;
+  Section& section = replay.section;
+  section.thickness = input.thickness.length;
+  if (kind == ReplayKind::timings) section.timed = intervals_to_time(input, range, request);
+  section.verified = united(std::vector{every_kth(range, request.verify_every), section.timed});
+  section.counted = united(std::vector{every_kth(range, request.count_every), section.verified});
   return replay;
 }
 
@@ -201,16 +164,22 @@ Record execute(Input& input, const Replay& replay) {
   record.thickness = input.thickness.length;
   // Queries with a thickness are other work, which no table puts beside the scene's own.
   if (record.thickness > 0) record.scene.name += ", thickness " + input.thickness.asked.thickness.text;
-  record.intervals = replay.intervals.range.last - replay.intervals.range.first;
-  record.counted_intervals = replay.intervals.counted;
-  record.timed_intervals = replay.intervals.timed;
+  record.intervals = replay.range.last - replay.range.first;
+  record.counted_intervals = replay.section.counted;
+  record.timed_intervals = replay.section.timed;
+  const bool is_timed = !replay.section.timed.empty();
   std::vector<Contestant> contestants =
-      make_contestants(input, chosen_rows(input, replay.request.strategies, record.pipeline), exact, timed);
-  for (const Contestant& contestant : contestants) record.strategies.push_back(describe(contestant));
-
-  record.verification = verified_and_timed(input, contestants, exact, timed, replay, record);
-  if (!record.verification.ok())
-    for (std::size_t c = 0; c < contestants.size(); ++c) record.strategies[c] = describe(contestants[c]);
+      make_contestants(input, chosen_rows(input, replay.request.strategies, record.pipeline), exact, timed,
+                       is_timed ? std::optional(replay.section.timed.front()) : std::nullopt);
+  Measurement measurement({input, contestants, exact, timed});
+  SectionResult& measured = measurement.verify(replay.section);
+  std::mt19937_64 random(record.seed);
+  if (is_timed && measured.verification.ok()) measurement.time({replay.request.repetitions, random, true});
+  if (!measured.verification.ok())  // what was prepared is all that is left
+    for (StrategyRecord& row : measured.rows)
+      row.counts.clear(), row.digests.clear(), row.first_times.clear(), row.ms.clear();
+  record.verification = std::move(measured.verification);
+  record.strategies = std::move(measured.rows);
   if (replay.kind == ReplayKind::counts) leave_out_what_varies(record);
   return record;
 }

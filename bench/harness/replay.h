@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "bench/harness/measurement.h"
 #include "bench/inputs/input.h"
 #include "bench/records/record.h"
 
@@ -31,20 +33,14 @@ void require_sound(const ReplayRequest& request);
 // and also times and footprints.
 enum class ReplayKind { counts, timings };
 
-// The intervals of a range that are measured, each list ascending. Intervals that are verified or timed are
-// among the counted ones, and timed intervals are among the verified ones.
-struct ChosenIntervals {
-  IntervalRange range;
-  std::vector<std::size_t> verified, counted, timed;
-};
-
 // A request that has been resolved for one input: its strategies are rows without groups, and it says in
 // numbers what `smoke` stands for.
 struct Replay {
   ReplayKind kind;
   ReplayRequest request;
   std::vector<std::string> command;  // the command line of the whole run, with every default spelt out
-  ChosenIntervals intervals;
+  IntervalRange range;               // that the command spans
+  Section section;  // the intervals of the range that are measured; all that are timed are verified
 };
 
 // Throws InputError where the input has no such frames, or allows none of the strategies.

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "bench/harness/contestant.h"
-#include "bench/harness/timing.h"
-#include "bench/harness/verification.h"
+#include "bench/harness/measurement.h"
 #include "scenes/random/random_interval.h"
 
 namespace cscd::bench {
@@ -26,21 +25,21 @@ inline Input random_input(std::uint64_t seed) {
 struct Trial {
   Input input;
   std::vector<Contestant> contestants;
-  Verifier verifier;
-  std::vector<StrategyRecord> records;
+  Measurement measurement;
   std::vector<std::size_t> all = {0};  // its intervals
 
   Trial(Input input_in, std::span<const StrategyRow> rows, const ElementaryTest& exact,
         const ElementaryTest& timed)
       : input(std::move(input_in)),
         contestants(make_contestants(input, rows, exact, timed)),
-        verifier(input, contestants, exact, timed),
-        records(rows.size()) {}
+        measurement({input, contestants, exact, timed}) {}
 
-  void judge() { verifier.judge(all); }
-  WarmUp count() { return warm_up(input, contestants, all, verifier, records); }
-  std::optional<Unrepeatable> time(const WarmUp& counted, std::size_t repetitions) {
-    return time_contestants(input, contestants, {all, repetitions, 1}, verifier, counted, records);
+  SectionResult& verify() { return measurement.verify({all, all, all}); }
+  // Judges only where rows disagree.
+  SectionResult& count() { return measurement.verify({all, {}, all}); }
+  void time(std::size_t repetitions) {
+    std::mt19937_64 random(1);
+    measurement.time({repetitions, random, true});
   }
 };
 

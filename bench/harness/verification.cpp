@@ -1,68 +1,41 @@
-#include "bench/harness/verification.h"
-
 #include <algorithm>
 
-#include "bench/harness/contestant.h"
-#include "bench/output/progress.h"
+#include "bench/harness/measurement.h"
 #include "bench/strategies/catalogue.h"
 #include "core/base/stopwatch.h"
 
 namespace cscd::bench {
+namespace {
 
-// The reference with both tests: a contestant where it takes part in the pipeline `today`, which drops no
-// contact, else made for the occasion.
-class Verifier::Reference {
- public:
-  Contestant own;
-  Contestant* used;
-
-  Reference(const Input& input, std::span<Contestant> contestants, const ElementaryTest& exact,
-            const ElementaryTest& timed) {
-    const StrategyRow reference{&complete_reference()};
-    const auto among = std::ranges::find(contestants, reference, &Contestant::row);
-    used = among != contestants.end() ? &*among : &own;
-    if (used == &own) own = std::move(make_contestants(input, {&reference, 1}, exact, timed).front());
-  }
-};
+using nlohmann::ordered_json;
 
 // A strategy with an elementary test of its own is compared, not judged: nothing is promised.
-class Verifier::OwnTest {
- public:
-  explicit OwnTest(const Strategy& strategy) : strategy_(strategy) {}
+ordered_json own_test_of(const Strategy& strategy) {
+  return {{"strategy", strategy.name},
+          {"misses", std::uint64_t{0}},
+          {"false_alarms", std::uint64_t{0}},
+          {"largest_time_error", 0.0},
+          {"differences", ordered_json::array()}};
+}
 
-  void compare(const TriangleMesh& mesh, std::size_t interval, const ContactSet& truth,
-               const ContactSet& answer) {
-    accuracy_.add(compare_elementary(truth, answer));
-    for (const Difference& difference : differences(truth, answer)) {
-      if (listed_.size() == kListed) return;
-      listed_.push_back({{"interval", interval},
-                         {"kind", is_vertex_face(difference.pair) ? "vf" : "ee"},
-                         {"vertices", VerticesOfPair::of(mesh, difference.pair).vertices},
-                         {"said", time(difference.said)},
-                         {"true", time(difference.truth)}});
-    }
+void compare_own_test(const TriangleMesh& mesh, std::size_t interval, const ContactSet& truth,
+                      const ContactSet& answer, ordered_json& row) {
+  constexpr std::size_t kListed = 200;
+  const auto time = [](const std::optional<double>& t) { return t ? ordered_json(*t) : ordered_json(); };
+  const Accuracy own = compare_elementary(truth, answer);
+  row["misses"] = row["misses"].get<std::uint64_t>() + own.misses;
+  row["false_alarms"] = row["false_alarms"].get<std::uint64_t>() + own.false_alarms;
+  row["largest_time_error"] = std::max(row["largest_time_error"].get<double>(), own.largest_time_error);
+  ordered_json& listed = row["differences"];
+  for (const Difference& difference : differences(truth, answer)) {
+    if (listed.size() == kListed) return;
+    listed.push_back({{"interval", interval},
+                      {"kind", difference.pair.kind == FeaturePair::Kind::vertex_face ? "vf" : "ee"},
+                      {"vertices", VerticesOfPair::of(mesh, difference.pair).vertices},
+                      {"said", time(difference.said)},  // null: apart
+                      {"true", time(difference.truth)}});
   }
-  nlohmann::ordered_json json() const {
-    return {{"strategy", strategy_.name},
-            {"misses", accuracy_.misses},
-            {"false_alarms", accuracy_.false_alarms},
-            {"largest_time_error", accuracy_.largest_time_error},
-            {"differences", listed_}};
-  }
-
- private:
-  static constexpr std::size_t kListed = 200;
-  static bool is_vertex_face(const FeaturePair& pair) { return pair.kind == FeaturePair::Kind::vertex_face; }
-  static nlohmann::ordered_json time(const std::optional<double>& t) {  // null: apart
-    return t ? nlohmann::ordered_json(*t) : nlohmann::ordered_json();
-  }
-
-  const Strategy& strategy_;
-  Accuracy accuracy_;
-  nlohmann::ordered_json listed_ = nlohmann::ordered_json::array();
-};
-
-namespace {
+}
 
 TruthRecord held_against(const OutsideTruth& outside, const TriangleMesh& mesh, const ContactSet& found) {
   constexpr std::size_t kListed = 20;
@@ -92,99 +65,87 @@ bool promises(Guarantee guarantee, bool starts_embedded, const ContactSet& refer
   return guarantee == Guarantee::complete || (needs_embedded_start(guarantee) && starts_embedded);
 }
 
-void add(const Verification& judgement, bool promised, std::size_t interval, VerifiedStrategy& row) {
-  row.contacts_expected += judgement.reference_contacts;
-  row.contacts_found += judgement.found_contacts;
-  row.intervals_promised += promised;
-  if (!judgement.ok)
-    row.failures.push_back("interval " + std::to_string(interval) + ": " + judgement.failure);
-}
-
 }  // namespace
 
-Verifier::Verifier(Input& input, std::span<Contestant> contestants, const ElementaryTest& exact,
-                   const ElementaryTest& timed)
-    : input_(input),
-      contestants_(contestants),
-      reference_(std::make_unique<Reference>(input, contestants, exact, timed)),
-      embedding_(std::make_unique<EmbeddingTest>(input.mesh, input.reference)) {
-  record_.reference = reference_->used->row.strategy->name;
-  record_.elementary = exact.name;
-  for (std::size_t c = 0; c < contestants.size(); ++c) {
-    const Strategy& strategy = *contestants[c].row.strategy;
-    VerifiedStrategy& row = record_.strategies.emplace_back();
-    row.name = contestants[c].row.name();
+bool same_culling(const Report& a, const Report& b) {
+  return a.cull.bvot == b.cull.bvot && a.cull.pctp == b.cull.pctp &&
+         a.cull.contour_box_tests == b.cull.contour_box_tests &&
+         a.pairs.adjacent_pctp == b.pairs.adjacent_pctp &&
+         a.pairs.relative_dropped == b.pairs.relative_dropped &&
+         a.pairs.feature_pairs == b.pairs.feature_pairs;
+}
+
+VerificationRecord Measurement::unjudged() const {
+  VerificationRecord record;
+  record.reference = reference_->row.strategy->name;
+  record.elementary = setup_.exact.name;
+  for (const Contestant& contestant : setup_.contestants) {
+    const Strategy& strategy = *contestant.row.strategy;
+    VerifiedStrategy& row = record.strategies.emplace_back();
+    row.name = contestant.row.name();
     row.guarantee = to_string(strategy.guarantee);
-    if (strategy.own_test) own_tests_.emplace(c, std::make_unique<OwnTest>(strategy));
+    if (strategy.own_test) record.own_tests.push_back(own_test_of(strategy));
   }
+  return record;
 }
 
-Verifier::~Verifier() = default;
-
-bool Verifier::has_judged(std::size_t interval) const {
-  return reports_.contains(interval);
-}
-
-bool Verifier::starts_embedded(std::size_t interval) const {
-  return !crossing_starts_.contains(interval);
-}
-
-const Report& Verifier::report(std::size_t contestant, std::size_t interval) const {
-  return reports_.at(interval)[contestant];
-}
-
-void Verifier::judge(std::span<const std::size_t> intervals) {
+std::optional<double> Measurement::judge(std::size_t i, const Answers& answers, VerificationRecord& record) {
   const Stopwatch judging;
-  Progress progress("verifying " + input_.name, intervals.size());
-  for (const std::size_t interval : intervals) {
-    if (!has_judged(interval)) judge_one(interval);
-    progress.advance();
-  }
-  record_.seconds += judging.milliseconds() / 1000;
-}
+  Input& input = setup_.input;
+  const std::span<Contestant> contestants = setup_.contestants;
+  const bool embedded = starts_embedded(i);
+  scenes::ClipInterval interval = input.clip->load(i);
+  const auto reference_of = [&](Detector& detector) {
+    Answered out;
+    ask(detector, reference_->row, input.step(interval), out);
+    return out;
+  };
+  const Answered* counted = nullptr;
+  for (std::size_t c = 0; c < contestants.size(); ++c)
+    if (is_reference(c) && answers[c]) counted = &*answers[c];
+  const Answered timed = counted ? *counted : reference_of(*reference_->timed);
+  const Answered expected =
+      reference_->judged == reference_->timed ? timed : reference_of(*reference_->judged);
+  const ContactSet& truth = expected.found;
 
-void Verifier::judge_one(std::size_t i) {
-  scenes::ClipInterval interval = input_.clip->load(i);
-  const bool starts_embedded = embedding_->embedded(interval.motion.start());
-  if (!starts_embedded) crossing_starts_.insert(i);
-
-  ContactSet truth, answer;
-  const Report expected = reference_->used->judged->detect(input_.step(interval), truth);
-  truth.sort();
-  const bool starts_close =
-      input_.thickness.length > 0 && !truth.contacts.empty() && truth.contacts.front().time == 0;
-  const bool promise_holds = starts_embedded && !starts_close;
-  if (!promise_holds) record_.unembedded.push_back(i);
-  if (!truth.contacts.empty()) record_.colliding.push_back(i);
-  if (input_.truth) record_.truth = held_against(*input_.truth, input_.mesh, truth);
-  std::vector<Report>& reports = reports_[i];
-  for (std::size_t c = 0; c < contestants_.size(); ++c) {
-    const Strategy& strategy = *contestants_[c].row.strategy;
-    const bool itself = &contestants_[c] == reference_->used;
-    lead_up(strategy, *contestants_[c].judged, input_, i);
-    interval = input_.clip->load(i);
-    reports.push_back(itself ? expected : contestants_[c].judged->detect(input_.step(interval), answer));
-    answer.sort();
-    if (contestants_[c].row.first) keep_first(answer);
-    if (const auto own = own_tests_.find(c); own != own_tests_.end()) {
-      own->second->compare(input_.mesh, i, truth, answer);
-      keep_shared(truth, answer);
+  const bool starts_close = input.thickness.length > 0 && expected.first_time() == 0.0;
+  const bool promise_holds = embedded && !starts_close;
+  record.intervals.push_back(i);
+  if (!promise_holds) record.unembedded.push_back(i);
+  if (!truth.contacts.empty()) record.colliding.push_back(i);
+  if (input.truth) record.truth = held_against(*input.truth, input.mesh, truth);
+  auto own_test = record.own_tests.begin();
+  Answered answer;
+  for (std::size_t c = 0; c < contestants.size(); ++c) {
+    Contestant& contestant = contestants[c];
+    const StrategyRow& asked = contestant.row;
+    ordered_json* const own = asked.strategy->own_test ? &*own_test++ : nullptr;
+    if (!answers[c]) continue;
+    if (&contestant == reference_) {
+      answer = expected;
+    } else if (contestant.judged == contestant.timed) {
+      answer = *answers[c];
+    } else {
+      interval = lead_to(i, asked, *contestant.judged);
+      ask(*contestant.judged, asked, input.step(interval), answer);
     }
-    add(verify(truth, itself ? truth : answer, contestants_[c].row, promise_holds),
-        promises(strategy.guarantee, promise_holds, truth), i, record_.strategies[c]);
+    VerifiedStrategy& row = record.strategies[c];
+    if (!asked.first && !same_culling(answer.report, answers[c]->report))
+      row.failures.push_back(setup_.where(i) + ": culls otherwise than when it was verified");
+    if (own != nullptr) {
+      compare_own_test(input.mesh, i, truth, answer.found, *own);
+      keep_shared(truth, answer.found);
+    }
+    const Verification judgement = bench::verify(truth, answer.found, asked, promise_holds);
+    row.contacts_expected += judgement.reference_contacts;
+    row.contacts_found += judgement.found_contacts;
+    row.intervals_promised += promises(asked.strategy->guarantee, promise_holds, truth);
+    if (!judgement.ok) row.failures.push_back(setup_.where(i) + ": " + judgement.failure);
   }
-  record_.accuracy_tests +=
-      reference_->used->timed->detect(input_.step(interval), answer).pairs.elementary_tests;
-  record_.accuracy.add(compare_elementary(truth, answer));
-}
-
-VerificationRecord Verifier::record() const {
-  VerificationRecord out = record_;
-  for (const auto& [c, own] : own_tests_) out.own_tests.push_back(own->json());
-  for (const auto& [interval, reports] : reports_) out.intervals.push_back(interval);
-  std::ranges::sort(out.unembedded);
-  std::ranges::sort(out.colliding);
-  return out;
+  record.accuracy_tests += timed.report.pairs.elementary_tests;
+  record.accuracy.add(compare_elementary(truth, timed.found));
+  record.seconds += judging.milliseconds() / 1000;
+  return expected.first_time();
 }
 
 }  // namespace cscd::bench

@@ -1,9 +1,8 @@
-#include "bench/harness/verification.h"
-
 #include <array>
 #include <gtest/gtest.h>
 #include <vector>
 
+#include "bench/harness/measurement.h"
 #include "bench/harness/test_trial.h"
 #include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
@@ -79,28 +78,20 @@ void count_otherwise_once(const StrategyInput& setup, int call, Report& report, 
   *report.cull.bvot += setup.elementary.name != exact_test().name && call == 3;
 }
 
-struct Outcome {
-  VerificationRecord verified;
-  std::optional<Unrepeatable> void_times;
-  std::vector<StrategyRecord> records;
-};
-
-Outcome judge(const Strategy& strategy, std::size_t repetitions = 3) {
+SectionResult judge(const Strategy& strategy, std::size_t repetitions = 3) {
   const std::array rows = {StrategyRow{&complete_reference()}, StrategyRow{&strategy}};
   Trial trial(colliding_input(), rows, exact_test(), newton());
-  trial.judge();
-  const WarmUp counted = trial.count();
-  Outcome outcome{trial.verifier.record(), counted.unrepeatable, {}};
-  if (!outcome.void_times) outcome.void_times = trial.time(counted, repetitions);
-  outcome.records = std::move(trial.records);
-  return outcome;
+  SectionResult& result = trial.verify();
+  trial.time(repetitions);
+  return std::move(result);
 }
 
 std::vector<std::string> failures(Prepared (*make)(const StrategyInput&), Guarantee guarantee) {
-  const Outcome outcome = judge({"saboteur", "test", guarantee, Needs::any_mesh, StrategyKind::fixed, make});
-  EXPECT_TRUE(outcome.verified.strategies[0].failures.empty());
-  EXPECT_EQ(outcome.verified.ok(), outcome.verified.strategies[1].failures.empty());
-  return outcome.verified.strategies[1].failures;
+  const SectionResult outcome =
+      judge({"saboteur", "test", guarantee, Needs::any_mesh, StrategyKind::fixed, make});
+  EXPECT_TRUE(outcome.verification.strategies[0].failures.empty());
+  EXPECT_EQ(outcome.verification.ok(), outcome.verification.strategies[1].failures.empty());
+  return outcome.verification.strategies[1].failures;
 }
 
 void lose_first_and_invent(const StrategyInput& setup, int call, Report& report, ContactSet& found) {
@@ -110,12 +101,12 @@ void lose_first_and_invent(const StrategyInput& setup, int call, Report& report,
 
 // A strategy with an elementary test of its own does not fail; what it gets wrong is listed.
 TEST(Verification, OwnTestsAreComparedAndTimed) {
-  const Outcome outcome = judge({"checker", "test", Guarantee::heuristic, Needs::any_mesh,
-                                 StrategyKind::fixed, sabotage<lose_first_and_invent>, "checker", true});
-  EXPECT_TRUE(outcome.verified.ok());
-  EXPECT_FALSE(outcome.void_times);
-  ASSERT_EQ(outcome.verified.own_tests.size(), 1u);
-  const nlohmann::ordered_json& own = outcome.verified.own_tests[0];
+  const SectionResult outcome =
+      judge({"checker", "test", Guarantee::heuristic, Needs::any_mesh, StrategyKind::fixed,
+             sabotage<lose_first_and_invent>, "checker", true});
+  EXPECT_TRUE(outcome.verification.ok());
+  ASSERT_EQ(outcome.verification.own_tests.size(), 1u);
+  const nlohmann::ordered_json& own = outcome.verification.own_tests[0];
   EXPECT_EQ(own["strategy"], "checker");
   EXPECT_GT(own["misses"], 0);
   EXPECT_EQ(own["false_alarms"], 1);
@@ -125,27 +116,26 @@ TEST(Verification, OwnTestsAreComparedAndTimed) {
   EXPECT_EQ(own["differences"].front()["vertices"].size(), 4u);
   EXPECT_EQ(own["differences"].back()["said"], 0);
   EXPECT_TRUE(own["differences"].back()["true"].is_null());
-  const VerifiedStrategy& row = outcome.verified.strategies[1];
+  const VerifiedStrategy& row = outcome.verification.strategies[1];
   EXPECT_EQ(row.contacts_found + own["misses"].get<std::uint64_t>(), row.contacts_expected);
 }
 
 TEST(Verification, HonestStrategiesPassAndAreTimed) {
   for (const Strategy& strategy : strategies()) {
-    const Outcome outcome = judge(strategy);
-    EXPECT_TRUE(outcome.verified.ok()) << strategy.name;
-    EXPECT_FALSE(outcome.void_times) << strategy.name;
-    EXPECT_EQ(outcome.verified.strategies[1].intervals_promised,
+    const SectionResult outcome = judge(strategy);
+    EXPECT_TRUE(outcome.verification.ok()) << strategy.name;
+    EXPECT_EQ(outcome.verification.strategies[1].intervals_promised,
               strategy.guarantee == Guarantee::heuristic ? 0u : 1u)
         << strategy.name;
-    EXPECT_EQ(outcome.verified.own_tests.size(), strategy.own_test ? 1u : 0u) << strategy.name;
-    EXPECT_EQ(outcome.verified.colliding, std::vector<std::size_t>{0});
-    EXPECT_TRUE(outcome.records[1].ms.contains("streaming"));
-    for (const auto& [stage, repetitions] : outcome.records[1].ms) {
+    EXPECT_EQ(outcome.verification.own_tests.size(), strategy.own_test ? 1u : 0u) << strategy.name;
+    EXPECT_EQ(outcome.verification.colliding, std::vector<std::size_t>{0});
+    EXPECT_TRUE(outcome.rows[1].ms.contains("streaming"));
+    for (const auto& [stage, repetitions] : outcome.rows[1].ms) {
       ASSERT_EQ(repetitions.size(), 3u) << stage;
       for (const std::vector<double>& row : repetitions) EXPECT_EQ(row.size(), 1u) << stage;
     }
-    EXPECT_EQ(outcome.records[1].counts.at("pctp").size(), 1u);
-    EXPECT_EQ(outcome.records[1].digests.size(), 1u);
+    EXPECT_EQ(outcome.rows[1].counts.at("pctp").size(), 1u);
+    EXPECT_EQ(outcome.rows[1].digests.size(), 1u);
   }
 }
 
@@ -165,21 +155,15 @@ TEST(Verification, ContactsThatTheReferenceLacksFail) {
 }
 
 TEST(Timing, CullingOtherwiseThanVerifiedVoidsTheTimes) {
-  const Outcome outcome = judge({"saboteur", "test", Guarantee::complete, Needs::any_mesh,
-                                 StrategyKind::fixed, sabotage<cull_more_when_timed>});
-  EXPECT_TRUE(outcome.verified.ok());
-  ASSERT_TRUE(outcome.void_times);
-  EXPECT_EQ(outcome.void_times->contestant, 1u);
+  EXPECT_EQ(failures(sabotage<cull_more_when_timed>, Guarantee::complete),
+            std::vector<std::string>{"interval 0: culls otherwise than when it was verified"});
 }
 
 TEST(Timing, AnswersThatDifferBetweenRepetitionsVoidTheTimes) {
-  const Outcome contacts = judge(
-      {"saboteur", "test", Guarantee::complete, Needs::any_mesh, StrategyKind::fixed, sabotage<forget_once>});
-  ASSERT_TRUE(contacts.void_times);
-  EXPECT_EQ(contacts.void_times->contestant, 1u);
-  EXPECT_TRUE(judge({"saboteur", "test", Guarantee::complete, Needs::any_mesh, StrategyKind::fixed,
-                     sabotage<count_otherwise_once>})
-                  .void_times);
+  const std::vector<std::string> expected{
+      "interval 0: other contacts or counters in repetition 1 than before"};
+  EXPECT_EQ(failures(sabotage<forget_once>, Guarantee::complete), expected);
+  EXPECT_EQ(failures(sabotage<count_otherwise_once>, Guarantee::complete), expected);
 }
 
 // Mutation: what the filter leaves for one test is held against what it leaves for another.
@@ -189,11 +173,12 @@ TEST(Verification, TheFilterMayLeaveOtherPairsForAnotherTest) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const std::array rows = {StrategyRow{&complete_reference()}};
     Trial trial(random_input(seed), rows, exact_test(), filtered);
-    trial.judge();
-    const WarmUp counted = trial.count();
-    EXPECT_FALSE(counted.unrepeatable) << seed;
-    others +=
-        counted.reports[0][0].pairs.elementary_tests != trial.verifier.report(0, 0).pairs.elementary_tests;
+    const SectionResult& result = trial.verify();
+    EXPECT_TRUE(result.verification.ok()) << seed;
+    Answered judged;
+    const scenes::ClipInterval interval = trial.input.clip->load(0);
+    ask(*trial.contestants[0].judged, rows[0], trial.input.step(interval), judged);
+    others += result.counted[0][0]->report.pairs.elementary_tests != judged.report.pairs.elementary_tests;
   }
   EXPECT_GT(others, 0u);
 }
@@ -209,11 +194,10 @@ TEST(Verification, AnIntervalOnWhichCompleteRowsDisagreeIsJudged) {
                             loses_first ? sabotage<lose_first> : sabotage<lose_last>};
     const std::array rows = {StrategyRow{&complete_reference()}, StrategyRow{&saboteur}};
     Trial trial(colliding_input(), rows, exact_test(), exact_test());
-    const WarmUp counted = trial.count();
-    EXPECT_EQ(counted.disagreeing, trial.all);
-    EXPECT_TRUE(trial.verifier.record().ok()) << "nothing was judged yet";
-    trial.verifier.judge(counted.disagreeing);
-    EXPECT_EQ(trial.verifier.record().strategies[1].failures.size(), 1u);
+    const VerificationRecord& verification = trial.count().verification;
+    EXPECT_EQ(verification.disagreeing, trial.all);
+    EXPECT_EQ(verification.intervals, trial.all);
+    EXPECT_EQ(verification.strategies[1].failures.size(), 1u);
   }
 }
 
@@ -223,14 +207,15 @@ TEST(Verification, ALaterContactThatARowNeedNotFindIsNoDisagreement) {
       "saboteur",         "test", Guarantee::first_contact, Needs::any_mesh, StrategyKind::fixed,
       sabotage<lose_last>};
   const std::array rows = {StrategyRow{&complete_reference()}, StrategyRow{&saboteur}};
-  EXPECT_TRUE(Trial(colliding_input(), rows, exact_test(), exact_test()).count().disagreeing.empty());
+  EXPECT_TRUE(
+      Trial(colliding_input(), rows, exact_test(), exact_test()).count().verification.disagreeing.empty());
 }
 
-TEST(Timing, WhatWasNotVerifiedIsNotTimed) {
+TEST(Timing, WhatWasNotAnsweredIsNotTimed) {
   const std::array rows = {StrategyRow{&complete_reference()}};
   Trial trial(colliding_input(), rows, exact_test(), newton());
-  const WarmUp counted = trial.count();
-  EXPECT_THROW(trial.time(counted, 3), InputError);
+  trial.measurement.verify({{}, {}, trial.all});
+  EXPECT_THROW(trial.time(3), InputError);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@
 #include "scenes/catalog/resized.h"
 
 // How cost grows: with triangles, with the length of the step, with bones, threads and contacts (schema
-// cscd.scale/1). What is run unless told otherwise is data, scale_plan.json.
+// cscd.scale/2). What is run unless told otherwise is data, scale_plan.json.
 namespace cscd::bench {
 namespace {
 
@@ -88,8 +88,9 @@ class Plan {
   }
 
   // Returns the settings that all studies begin from.
-  ScaleSubject common(const std::string& scene) const {
+  ScaleSubject common(const std::string& scene, const char* rows) const {
     ScaleSubject subject;
+    subject.rows = chosen_rows(options_, data_.at(rows));
     subject.scene = scene;
     subject.steps = {{scene}};
     subject.triangles = data_.at("other_triangles");
@@ -99,9 +100,11 @@ class Plan {
     return subject;
   }
 
+  bool lists(const char* key, const std::string& scene) const {
+    return std::ranges::find(data_.at(key), ordered_json(scene)) != data_.at(key).end();
+  }
+
   void size(ScaleSubject subject) {
-    if (options_.scenes.empty() && !planned_for("scenes", subject.scene)) return;
-    subject.rows = chosen_rows(options_, data_.at("size_strategies"));
     std::vector<std::size_t> sizes = sizes_;
     if (options_.largest)
       for (const std::size_t size : data_.at("largest")) sizes.push_back(size);
@@ -109,28 +112,20 @@ class Plan {
     for (const std::size_t size : sizes) subject.triangles = size, add(subject);
   }
   void step(ScaleSubject subject) {
-    if (options_.scenes.empty() && !planned_for("scenes", subject.scene)) return;
-    subject.rows = chosen_rows(options_, data_.at("step_strategies"));
     subject.steps.clear();
     for (const double step : steps_) subject.steps.push_back({subject.scene, step});
     add(subject);
   }
   void bones(ScaleSubject subject) {
-    if (!planned_for("bone_scenes", subject.scene)) return;
-    subject.rows = chosen_rows(options_, data_.at("bone_strategies"));
     for (const std::size_t bones : data_.at("bones")) subject.bones = bones, add(subject);
   }
   void threads(ScaleSubject subject) {
-    if (!planned_for("thread_scenes", subject.scene)) return;
-    subject.rows = chosen_rows(options_, data_.at("thread_strategies"));
     subject.triangles = data_.at("thread_triangles");
     for (const int threads : data_.at("threads"))
       if (threads == 1 || threads <= static_cast<int>(std::thread::hardware_concurrency()))
         subject.threads = threads, add(subject);
   }
   void contacts(ScaleSubject subject) {
-    if (!planned_for("contact_scenes", subject.scene)) return;
-    subject.rows = chosen_rows(options_, data_.at("contact_strategies"));
     subject.recorded = true;
     subject.triangles = 0;
     subject.steps.push_back({subject.scene + "_contact"});
@@ -138,8 +133,6 @@ class Plan {
   }
 
   void thickness(ScaleSubject subject) {
-    if (options_.scenes.empty() && !planned_for("thickness_scenes", subject.scene)) return;
-    subject.rows = chosen_rows(options_, data_.at("thickness_strategies"));
     for (const StrategyRow& row : subject.rows)
       require_fit({.thickness = parse_length("--thickness", "1e")}, *row.strategy);
     subject.recorded = true;
@@ -159,9 +152,6 @@ class Plan {
   }
   std::size_t or_planned(std::size_t given, const char* key) const {
     return given > 0 ? given : data_.at(key).get<std::size_t>();
-  }
-  bool planned_for(const char* key, const std::string& scene) const {
-    return std::ranges::find(data_.at(key), ordered_json(scene)) != data_.at(key).end();
   }
   void add(ScaleSubject subject, const char* intervals = "intervals") {
     // A variant with contacts may be shorter than its scene.
@@ -184,9 +174,15 @@ class Plan {
 
 constexpr struct {
   const char* name;
+  const char *scenes, *rows;  // where the plan in data lists them
+  bool any_scene;             // that the user names, planned or not
   void (Plan::*add)(ScaleSubject);
-} kStudies[] = {{"size", &Plan::size},       {"step", &Plan::step},         {"bones", &Plan::bones},
-                {"threads", &Plan::threads}, {"contacts", &Plan::contacts}, {"thickness", &Plan::thickness}};
+} kStudies[] = {{"size", "scenes", "size_strategies", true, &Plan::size},
+                {"step", "scenes", "step_strategies", true, &Plan::step},
+                {"bones", "bone_scenes", "bone_strategies", false, &Plan::bones},
+                {"threads", "thread_scenes", "thread_strategies", false, &Plan::threads},
+                {"contacts", "contact_scenes", "contact_strategies", false, &Plan::contacts},
+                {"thickness", "thickness_scenes", "thickness_strategies", true, &Plan::thickness}};
 
 // Point caches have one size and the motion that they hold, so one study alone takes them. It runs where it
 // is named: thick queries of large surfaces take as long as all the other studies.
@@ -214,7 +210,9 @@ std::vector<ScaleSubject> planned(const ScaleOptions& options) {
   for (const std::string& scene : plan.scenes())
     for (const auto& study : kStudies) {
       if (!takes(options, study.name, scene)) continue;
-      ScaleSubject subject = plan.common(scene);
+      const bool is_named = study.any_scene && !options.scenes.empty();
+      if (!is_named && !plan.lists(study.scenes, scene)) continue;
+      ScaleSubject subject = plan.common(scene, study.rows);
       subject.study = study.name;
       (plan.*study.add)(std::move(subject));
     }
@@ -223,7 +221,7 @@ std::vector<ScaleSubject> planned(const ScaleOptions& options) {
 
 // Queries that will be asked, weighed by triangles: about what a run costs.
 double estimated_minutes(std::span<const ScaleSubject> all) {
-  constexpr double kMicrosecondsATriangle = 80, kSecondsOnce = 1;
+  constexpr double kMicrosecondsATriangle = 125, kSecondsOnce = 1;
   double seconds = 0;
   for (const ScaleSubject& subject : all) {
     const auto triangles =
@@ -309,7 +307,7 @@ void run_scale(const ScaleOptions& options) {
     print(subjects.back());
     progress.advance();
   }
-  const ordered_json record = {{"schema", "cscd.scale/1"},
+  const ordered_json record = {{"schema", "cscd.scale/2"},
                                {"environment", where},
                                {"command", command_line(options, all)},
                                {"seed", options.seed},

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "bench/harness/interval_source.h"
 #include "bench/measure/studies/scale_input.h"
 #include "bench/measure/studies/scale_summary.h"
 #include "bench/measure/studies/scaling.h"
@@ -79,19 +80,42 @@ TEST(Between, LiesOnTheStraightLines) {
   EXPECT_EQ(quarter.bones[0].tail, Vec3(0, 8, 1));
 }
 
-TEST(MomentSource, GivesIntervalsBetweenAnyTwoMoments) {
-  const auto at = [](double x) {
-    return Moment{{{x, 0, 0}, {x, 1, 0}, {x, 0, 1}}, {{{x, 0, 0}, {x, 1, 1}}}};
-  };
-  const scenes::ClipHeader header{{{VertexId{0}, VertexId{1}, VertexId{2}}}, 3, {BoneId{-1}}, false};
-  MomentSource source(header, {at(0), at(1), at(5)}, {{0, 2}, {0, 1}, {2, 1}});
-  EXPECT_EQ(source.interval_count(), 3u);
+TEST(IntervalSource, GivesIntervalsThatNeedNotFollowEachOther) {
+  std::vector<std::vector<Vec3>> at;
+  for (const double x : {0.0, 1.0, 5.0}) at.push_back({{x, 0, 0}, {x, 1, 0}, {x, 0, 1}});
+  const std::pair<std::size_t, std::size_t> ends[] = {{0, 2}, {0, 1}, {2, 1}};
+  IntervalSource source({{{VertexId{0}, VertexId{1}, VertexId{2}}}, 3, {}, false}, 2, [&](std::size_t i) {
+    return scenes::ClipInterval{Motion(at[ends[i].first], at[ends[i].second]), std::nullopt};
+  });
+  EXPECT_EQ(source.interval_count(), 2u) << "the third one leads up to another";
   EXPECT_EQ(source.load(0).motion.end()[1], Vec3(5, 1, 0));
-  EXPECT_EQ(source.load(1).motion.end()[1], Vec3(1, 1, 0));
   EXPECT_EQ(source.load(2).motion.start()[0], Vec3(5, 0, 0));
-  EXPECT_EQ(source.load(2).bones->end[0].head, Vec3(1, 0, 0));
-  EXPECT_EQ(source.load_frame(3).positions[0], Vec3(1, 0, 0));
-  EXPECT_THROW(MomentSource(header, {Moment{{{0, 0, 0}}, {}}}, {{0, 0}}), InputError);
+  EXPECT_EQ(source.load_frame(1).positions[0], Vec3(0, 0, 0));
+  EXPECT_EQ(source.load_frame(2).positions[0], Vec3(1, 0, 0));
+}
+
+// Mutations: the intervals that lead up to one are those of another; they end after it starts.
+TEST(ScaleInput, LeadsUpToEachIntervalByIntervalsOfItsLength) {
+  ScaleSubject subject;
+  subject.scene = "urchin";
+  subject.triangles = 3000;
+  subject.steps = {{"urchin", 0.5}, {"urchin", 3}};
+  subject.starts = {10, 100};
+  const ScaleInput scaled = scale_input(subject);
+  scenes::ClipSource& clip = *scaled.input.clip;
+  ASSERT_EQ(clip.interval_count(), 4u);
+  const std::size_t expected[] = {20, 24, 3, 24};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const IntervalRange& lead = scaled.leads[i];
+    ASSERT_EQ(lead.last - lead.first, expected[i]);
+    std::vector<Vec3> last;
+    for (std::size_t k = lead.first; k <= lead.last; ++k) {
+      const Motion motion = clip.load(k < lead.last ? k : i).motion;
+      const std::vector<Vec3> start(motion.start().begin(), motion.start().end());
+      EXPECT_TRUE(k == lead.first || start == last) << i;
+      last.assign(motion.end().begin(), motion.end().end());
+    }
+  }
 }
 
 TEST(SpreadStarts, LeaveRoomForTheLongestStep) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <sstream>
 
 #include "bench/output/gzip.h"
@@ -53,6 +54,20 @@ void append_times(const StageTimes& ms, TimeColumns& columns, std::size_t repeti
   if (ms.classify) add("rv_update", *ms.classify);
   add("traversal", ms.traversal);
   add("elementary", ms.elementary);
+}
+
+std::vector<std::vector<double>> query_times(const TimeColumns& columns) {
+  std::vector<std::vector<double>> sums;
+  for (const std::string_view stage : kQueryStages) {
+    const auto column = columns.find(std::string(stage));
+    if (column == columns.end()) continue;
+    sums.resize(column->second.size());
+    for (std::size_t r = 0; r < sums.size(); ++r) {
+      sums[r].resize(column->second[r].size(), 0);
+      std::ranges::transform(sums[r], column->second[r], sums[r].begin(), std::plus());
+    }
+  }
+  return sums;
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -30,6 +31,12 @@ using CountColumns = std::map<std::string, std::vector<std::uint64_t>>;
 // complete row that answers where the start is not known, is what finding the crossings at the start adds to
 // its query.
 using TimeColumns = std::map<std::string, std::vector<std::vector<double>>>;
+
+// The columns that a query consists of. The others are beside it.
+inline constexpr std::array<std::string_view, 4> kQueryStages = {"refit", "rv_update", "traversal",
+                                                                 "elementary"};
+// Returns what whole queries took, [repetition][timed interval].
+std::vector<std::vector<double>> query_times(const TimeColumns& columns);
 
 struct PreparationRecord {  // one sample for every time that the strategy was made
   std::vector<double> distance_and_heat_ms, decomposition_ms;

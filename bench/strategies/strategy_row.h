@@ -34,8 +34,8 @@ std::vector<StrategyRow> rows_of(std::span<const Strategy> strategies);
 std::vector<StrategyRow> rows_called(std::span<const std::string> texts);
 
 // Holds an answer to the row's guarantee, as verify does for all contacts. What was asked for `first`, and
-// cut down by `keep_first`, has to have all contacts of the earliest time where all are promised. Both sets
-// sorted.
+// cut down by `keep_first`, has to have all contacts of the earliest time where all are promised, and
+// contacts are counted among those of the earliest time alone. Both sets sorted.
 Verification verify(const ContactSet& reference, const ContactSet& answer, const StrategyRow& row,
                     bool starts_embedded);
 

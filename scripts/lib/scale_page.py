@@ -328,6 +328,8 @@ def checked_part(record):
             "- Where the reference answers fewer intervals, its times and counters are of those alone.",
             "- Times are medians over repetitions of the mean over the intervals, strategies interleaved in random order; "
             "counters are means.",
+            "- A strategy that follows the surface forgets what it adapted to, and then answers as many intervals of the same length before each one "
+            f"that is timed as the clip has, up to {max(max(step['leads']) for step in steps)}." if all("leads" in step for step in steps) else
             "- Unlike `cscd run`, this study makes no pass over the intervals before it takes times, and no strategy forgets what it adapted to: one that "
             "follows the surface has the clusters that the intervals asked before left it, which lie further apart than those of a simulation.",
             "- Body and limbs are subdivided above the scene's own resolution (Loop), tubes and boxes built anew.",

@@ -86,14 +86,14 @@ Worker parse_worker(const std::string& text) {
 
 std::vector<RunCell> divide(Input& input, const Replay& replay, std::size_t cell_intervals) {
   const ordered_json content = content_of(input), code = code_version();
-  const ChosenIntervals& all = replay.intervals;
   std::vector<RunCell> cells;
-  for (std::size_t first = all.range.first; first < all.range.last; first += cell_intervals) {
-    const IntervalRange range{first, std::min(first + cell_intervals, all.range.last)};
+  for (std::size_t first = replay.range.first; first < replay.range.last; first += cell_intervals) {
+    const IntervalRange range{first, std::min(first + cell_intervals, replay.range.last)};
     RunCell cell{{}, replay};
-    cell.replay.intervals = {range, within(all.verified, range), within(all.counted, range),
-                             within(all.timed, range)};
-    const ChosenIntervals& own = cell.replay.intervals;
+    cell.replay.range = range;
+    Section& own = cell.replay.section;
+    for (std::vector<std::size_t>* list : {&own.verified, &own.counted, &own.timed})
+      *list = within(*list, range);
     if (own.counted.empty()) continue;
     const ordered_json decisive = {content,     replay.command, replay.kind == ReplayKind::timings,
                                    range.first, range.last,     own.verified,
@@ -124,7 +124,7 @@ bool measure_cells(Input& input, std::span<const RunCell> cells, Worker worker, 
     if (cell.replay.kind == ReplayKind::timings) record.environment["process"] = process_number();
     ok = record.verification.ok() && ok;
     write_unless_there(path, gzipped(json_text(to_json(record))));
-    const IntervalRange& range = cell.replay.intervals.range;
+    const IntervalRange& range = cell.replay.range;
     std::printf("cell %zu of %zu, intervals %zu to %zu: %s\n", i + 1, cells.size(), range.first,
                 range.last - 1, path.c_str());
     std::fflush(stdout);

@@ -17,8 +17,8 @@ constexpr char kAgain[] = "; remove the file, and run the command again";
 
 Record read_result(const RunCell& cell, const fs::path& path) {
   Record record = read_record(path);
-  if (record.command != cell.replay.command || record.counted_intervals != cell.replay.intervals.counted ||
-      record.timed_intervals != cell.replay.intervals.timed)
+  if (record.command != cell.replay.command || record.counted_intervals != cell.replay.section.counted ||
+      record.timed_intervals != cell.replay.section.timed)
     throw InputError("result " + path.string() + ": its command or its intervals are not those of its cell" +
                      kAgain);
   return record;
@@ -87,7 +87,7 @@ void append(const StrategyRecord& more, const RunCell& cell, const fs::path& pat
   append(more.preparation.decomposition_ms, to.preparation.decomposition_ms);
   keep_largest(more.footprint.peak_bytes, to.footprint.peak_bytes);
   keep_largest(more.footprint.held_bytes, to.footprint.held_bytes);
-  add_instructions(more.footprint.instructions, cell.replay.intervals.timed.size(), to.footprint.instructions,
+  add_instructions(more.footprint.instructions, cell.replay.section.timed.size(), to.footprint.instructions,
                    timed);
   require_same_columns(std::ranges::equal(more.counts, to.counts, {}, &CountColumns::value_type::first,
                                           &CountColumns::value_type::first),
@@ -165,7 +165,7 @@ Record join(const Replay& whole, std::span<const RunCell> cells, const fs::path&
   }
   if (!ok) std::ranges::for_each(joined.strategies, leave_out_measurements);
   joined.environment.erase("process");
-  joined.intervals = whole.intervals.range.last - whole.intervals.range.first;
+  joined.intervals = whole.range.last - whole.range.first;
   // Times of several processes are not one process's; counts are the same in any number of them.
   joined.processes = std::max<std::size_t>(1, processes.size());
   return joined;

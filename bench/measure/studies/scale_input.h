@@ -32,9 +32,11 @@ struct ScaleSubject {
   std::size_t reference_limit = 0;
 };
 
-// The surface at rest, and all intervals of its first step, then those of the next.
+// The surface at rest, and all intervals of its first step, then those of the next. `leads` are those of
+// Measurement::Setup: intervals of the same length that end where an interval starts.
 struct ScaleInput {
   Input input;
+  std::vector<IntervalRange> leads;
   double build_ms;
 };
 

@@ -1,21 +1,13 @@
 #include "bench/measure/studies/scale_study.h"
 
 #include <algorithm>
-#include <functional>
-#include <map>
 #include <numeric>
 #include <optional>
 
-#include "bench/harness/footprint.h"
-#include "bench/harness/timing.h"
-#include "bench/records/record.h"
+#include "bench/harness/measurement.h"
 #include "bench/records/shortfall.h"
 #include "bench/statistics/statistics.h"
 #include "bench/strategies/catalogue.h"
-#include "bench/strategies/strategy_row.h"
-#include "core/base/random.h"
-#include "core/base/stopwatch.h"
-#include "core/detect/start/embedding.h"
 #include "core/mesh/mean_edge.h"
 #include "scenes/catalog/plain_name.h"
 
@@ -29,148 +21,41 @@ constexpr char kElementary[] = "filtered_exact";
 // Milliseconds. Queries that take more than kOnce are not repeated. A strategy whose queries take more than
 // kTooLong is not asked for longer steps, of which the reference then answers one interval alone.
 constexpr double kOnce = 300, kTooLong = 2000;
-constexpr const char* kStages[] = {"refit", "rv_update", "traversal", "elementary"};
 
-struct Entrant {
-  StrategyRow row;
-  Made made;
-  bool reference;
-  // By step: one interval's counters a place, and [repetition][interval] of every stage.
-  std::vector<CountColumns> counts;
-  std::vector<TimeColumns> ms, once;  // repeated; while it was verified
-  // By step: what the answers lack on the intervals that the reference answered too.
-  std::vector<Shortfall> lacking;
-  // By interval: what the strategy promises of its contacts, empty where it did not answer.
-  std::vector<std::string> promised;
-};
-
-Report answer(Entrant& entrant, const Step& step, ContactSet& found) {
-  const Report report = entrant.made.prepared.detector->detect(step, found);
-  found.sort();
-  if (entrant.row.first) keep_first(found);
-  return report;
-}
-
-// The outcome of the verification of one step's intervals.
-struct Verified {
-  std::size_t embedded = 0, colliding = 0, by_reference = 0;
-  std::size_t clear = 0;            // embedded, and with a thickness, nothing is close
-  std::vector<ordered_json> first;  // time of the first contact of each interval, null without one
-  std::vector<std::string> failures;
-};
-
-ordered_json first_time(const ContactSet& sorted) {
-  return sorted.contacts.empty() ? ordered_json() : ordered_json(sorted.contacts.front().time);
-}
-
-class Measurement {
+// A subject as a plan of sections, one a step.
+class Study {
  public:
-  explicit Measurement(const ScaleSubject& subject)
+  explicit Study(const ScaleSubject& subject)
       : subject_(subject),
         scaled_(scale_input(subject)),
         edge_(mean_edge(input().mesh, input().rest())),
         is_thick_(std::ranges::any_of(subject.steps, [](const ScaleStep& s) { return s.edges > 0; })) {
     const ElementaryTest& test = elementary_test_named(kElementary);
-    std::vector<StrategyRow> rows = subject.rows;
-    const StrategyRow reference{&complete_reference()};
-    if (std::ranges::find(rows, reference) == rows.end()) rows.push_back(reference);
-    for (const StrategyRow& row : rows) {
+    for (const StrategyRow& row : subject.rows) {
       if (const auto why = why_not(*row.strategy, input().mesh, input().rig.has_value())) {
         left_out_.push_back({{"name", row.name()}, {"why", *why}});
         continue;
       }
-      entrants_.push_back({row, make(row, test), row == reference, {}, {}, {}, {}, {}});
+      // A footprint takes two answers, too many of the reference on a large surface.
+      const bool is_measured = row.strategy != &complete_reference() || is_small();
+      contestants_.push_back(make_contestant(input(), row, test, test,
+                                             is_measured ? std::optional<std::size_t>(0) : std::nullopt));
     }
-    for (Entrant& c : entrants_) {
-      c.counts.resize(subject.steps.size());
-      c.ms.resize(subject.steps.size());
-      c.once.resize(subject.steps.size());
-      c.lacking.resize(subject.steps.size());
-      c.promised.resize(interval_count());
-    }
-    verified_.resize(subject.steps.size());
-    embedded_.resize(interval_count());
+    measurement_.emplace(Measurement::Setup{
+        input(), contestants_, test, test, scaled_.leads, [this](std::size_t interval) {
+          return "from frame " + std::to_string(subject_.starts[interval % subject_.starts.size()]);
+        }});
   }
 
-  // Every strategy answers every interval, the reference where it takes part.
-  void verify() {
-    EmbeddingTest embedding(input().mesh, input().reference);
-    std::map<std::pair<std::string, std::size_t>, bool> embedded;  // by scene and start: steps share them
-    ContactSet truth, found;
-    for (std::size_t i = 0; i < interval_count(); ++i) {
-      Verified& verified = verified_[step_of(i)];
-      const scenes::ClipInterval interval = input().clip->load(i);
-      const auto [start, fresh] =
-          embedded.try_emplace({subject_.steps[step_of(i)].scene, start_of(i)}, false);
-      if (fresh) start->second = embedding.embedded(interval.motion.start());
-      bool promise_holds = start->second;
-      embedded_[i] = promise_holds;
-      verified.embedded += start->second;
-
-      const bool judged = reference_answers(i);
-      if (judged) {
-        Entrant& reference = *std::ranges::find_if(entrants_, &Entrant::reference);
-        const Report report = answer(reference, asked(interval, i), truth);
-        // With a thickness, promises are about clear starts.
-        if (length_of(i) > 0 && first_time(truth) == 0.0) promise_holds = false;
-        embedded_[i] = promise_holds;
-        verified.clear += promise_holds;
-        keep(reference, i, report, truth);
-        ++verified.by_reference;
-      }
-      ordered_json first = judged ? first_time(truth) : ordered_json();
-      const Entrant* told = nullptr;  // who told the first contact where the reference did not
-      for (Entrant& c : entrants_) {
-        if (c.reference || left_out(c, step_of(i))) continue;
-        keep(c, i, answer(c, asked(interval, i), found), found);
-        const std::string where = label(c, i);
-        if (judged) {
-          compare_with(truth, found, promise_holds, c, c.lacking[step_of(i)]);
-          const Verification judgement = bench::verify(truth, found, c.row, promise_holds);
-          if (!judgement.ok) verified.failures.push_back(where + judgement.failure);
-        } else if (!told) {
-          first = first_time(found);
-          told = &c;
-        } else if (start->second && first != first_time(found)) {
-          verified.failures.push_back(where + "another first contact than " + told->row.name());
-        }
-      }
-      verified.colliding += !first.is_null();
-      verified.first.push_back(std::move(first));
-    }
+  void measure(std::mt19937_64& random) {
+    for (std::size_t s = 0; s < subject_.steps.size(); ++s)
+      results_.push_back(&measurement_->verify(section(s)));
+    measurement_->time({.repetitions = subject_.repetitions, .random = random, .most_ms = kOnce});
   }
 
-  // Interval by interval, in an order drawn anew. Who answered some intervals only has the times of those.
-  void time(std::mt19937_64& random) {
-    ContactSet found;
-    for (std::size_t repetition = 0; repetition < subject_.repetitions; ++repetition)
-      for (std::size_t i = 0; i < interval_count(); ++i) {
-        if (!verified_[step_of(i)].failures.empty()) continue;
-        const scenes::ClipInterval interval = input().clip->load(i);
-        std::vector<Entrant*> order;
-        for (Entrant& c : entrants_)
-          if (is_timed(c) && !c.promised[i].empty() && once_ms(c, step_of(i)) <= kOnce) order.push_back(&c);
-        shuffle(order, random);
-        for (Entrant* c : order) {
-          stream_positions(interval.motion);
-          const Report report = answer(*c, asked(interval, i), found);
-          append_times(report.ms, c->ms[step_of(i)], repetition);
-          if (promised(*c, i, found) != c->promised[i]) {
-            verified_[step_of(i)].failures.push_back(label(*c, i) + "other contacts when timed");
-            break;
-          }
-        }
-      }
-  }
-
-  bool ok() const {
-    return std::ranges::all_of(verified_, [](const Verified& v) { return v.failures.empty(); });
-  }
-
-  ordered_json json() const {
+  ordered_json json() {
     ordered_json strategies = ordered_json::array(), steps = ordered_json::array();
-    for (const Entrant& c : entrants_)
-      if (is_timed(c)) strategies.push_back(preparation_json(c));
+    for (const Contestant& c : contestants_) strategies.push_back(preparation_json(c));
     for (std::size_t s = 0; s < subject_.steps.size(); ++s) steps.push_back(step_json(s));
     return {{"study", subject_.study},
             {"scene", scenes::plain_name(subject_.scene)},
@@ -179,7 +64,7 @@ class Measurement {
             {"bones", input().rig ? input().rig->parent.size() : 0},
             {"threads", subject_.threads},
             {"build_ms", scaled_.build_ms},
-            {"ok", ok()},
+            {"ok", std::ranges::all_of(results_, [](const auto* r) { return r->verification.ok(); })},
             {"strategies", std::move(strategies)},
             {"left_out", left_out_},
             {"steps", std::move(steps)}};
@@ -187,171 +72,123 @@ class Measurement {
 
  private:
   Input& input() { return scaled_.input; }
-  const Input& input() const { return scaled_.input; }
-  std::size_t interval_count() const { return subject_.steps.size() * subject_.starts.size(); }
-  std::size_t step_of(std::size_t interval) const { return interval / subject_.starts.size(); }
-  std::size_t start_of(std::size_t interval) const {
-    return subject_.starts[interval % subject_.starts.size()];
-  }
-  // The thickness of an interval.
-  double length_of(std::size_t interval) const { return subject_.steps[step_of(interval)].edges * edge_; }
-  Step asked(const scenes::ClipInterval& interval, std::size_t number) const {
-    Step step = input().step(interval);
-    step.thickness = Thickness(length_of(number));
-    return step;
-  }
-  // Begins the line of a failure, under the step that it belongs to.
-  std::string label(const Entrant& c, std::size_t interval) const {
-    return c.row.name() + ", from frame " + std::to_string(start_of(interval)) + ": ";
-  }
-  // Counts what an answer lacks of the reference's. A row that is asked for the first contact lacks nothing
-  // but that one.
-  static void compare_with(const ContactSet& truth, const ContactSet& found, bool promise_holds,
-                           const Entrant& c, Shortfall& out) {
-    const std::size_t all = truth.contacts.size();
-    out.contacts_expected += c.row.first ? std::min<std::size_t>(all, 1) : all;
-    out.contacts_found += found.contacts.size();
-    ++out.intervals;
-    out.void_intervals +=
-        !promise_holds && needs_embedded_start(std::string(to_string(c.row.strategy->guarantee)));
-  }
-  bool is_timed(const Entrant& c) const {
-    return std::ranges::find(subject_.rows, c.row) != subject_.rows.end();
-  }
-  // Milliseconds of a query as it was verified, mean over a step's intervals; 0 if it answered none.
-  double once_ms(const Entrant& c, std::size_t s) const {
-    double sum = 0;
-    for (const auto& [stage, repetitions] : c.once[s]) sum += mean(repetitions.front());
-    return sum;
-  }
-  // By what it took for an earlier step, which is no longer than this one.
-  bool left_out(const Entrant& c, std::size_t s) const {
-    for (std::size_t earlier = 0; earlier < s; ++earlier)
-      if (once_ms(c, earlier) > kTooLong) return true;
-    return false;
-  }
-  // All intervals of small surfaces and short steps; else the first of a step, and those that fewer than two
-  // others answer.
-  bool reference_answers(std::size_t interval) const {
-    const std::size_t s = step_of(interval);
+  bool is_small() { return input().mesh.triangle_count() <= subject_.reference_limit; }
+
+  // All intervals of a step. The reference judges all of them on small surfaces and in short steps; else the
+  // first of the step, or all where fewer than two others answer. With a thickness it judges all, because
+  // nobody else can tell for sure what is close at the start.
+  Section section(std::size_t s) {
+    Section out;
+    out.counted.resize(subject_.starts.size());
+    std::iota(out.counted.begin(), out.counted.end(), s * subject_.starts.size());
+    out.timed = out.counted;
+    out.thickness = subject_.steps[s].edges * edge_;
+    out.reference_answers_all = false;
+    bool all = is_small();
     std::size_t others = 0;
-    for (const Entrant& c : entrants_) {
-      if (!c.reference)
-        others += !left_out(c, s);
-      else if (input().mesh.triangle_count() <= subject_.reference_limit && !left_out(c, s))
-        return true;
+    for (std::size_t c = 0; c < contestants_.size(); ++c) {
+      const bool is_reference =
+          contestants_[c].row.strategy == &complete_reference() && !contestants_[c].row.first;
+      const bool is_slow = std::ranges::any_of(
+          results_, [&](const SectionResult* earlier) { return earlier->mean_ms(c) > kTooLong; });
+      if (is_reference) all = all && !is_slow;
+      out.asked.push_back(is_reference || !is_slow);
+      others += !is_reference && !is_slow;
     }
-    // What is close at the start, the reference alone says for sure.
-    if (is_thick_) return true;
-    return interval % subject_.starts.size() == 0 || others < 2;
+    for (const SectionResult* earlier : results_) {  // of a reference that is no row, what judging took
+      const VerificationRecord& judged = earlier->verification;
+      all = all && 1000 * judged.seconds <= kTooLong * static_cast<double>(judged.intervals.size());
+    }
+    out.verified = out.counted;
+    if (!all && !is_thick_ && others >= 2) out.verified.resize(1);
+    return out;
   }
 
-  // Measuring memory takes two answers, too many of the reference on a large surface.
-  Made make(const StrategyRow& row, const ElementaryTest& test) {
-    if (row.strategy != &complete_reference() || input().mesh.triangle_count() <= subject_.reference_limit)
-      return make_measured(input(), row, test, 0);
-    const Stopwatch making;
-    Made made{row.strategy->make(
-                  setup_for(*row.strategy, input().setup(test, row.first), input().clip->interval_count())),
-              {}};
-    made.make_ms = making.milliseconds();
-    return made;
-  }
-
-  // What a strategy promises of these contacts. What else it reports may depend on the intervals that it has
-  // answered before, where its covers follow the surface.
-  std::string promised(const Entrant& c, std::size_t interval, const ContactSet& sorted) const {
-    const Guarantee guarantee = c.row.strategy->guarantee;
-    if (needs_embedded_start(guarantee) && !embedded_[interval]) return "nothing";
-    return guarantee == Guarantee::first_contact ? first_time(sorted).dump() : digest(sorted);
-  }
-
-  void keep(Entrant& c, std::size_t interval, const Report& report, const ContactSet& sorted) {
-    append_counts(report, sorted, c.counts[step_of(interval)]);
-    append_times(report.ms, c.once[step_of(interval)], 0);
-    c.promised[interval] = promised(c, interval, sorted);
-  }
-
-  ordered_json preparation_json(const Entrant& c) const {
+  ordered_json preparation_json(const Contestant& c) {
     ordered_json out = {{"name", c.row.name()},
                         {"guarantee", to_string(c.row.strategy->guarantee)},
-                        {"threads", c.made.prepared.preparation.threads},
-                        {"make_ms", c.made.make_ms}};
-    const Preparation& preparation = c.made.prepared.preparation;
-    if (preparation.distance_and_heat_ms) out["distance_and_heat_ms"] = *preparation.distance_and_heat_ms;
-    if (preparation.decomposition_ms) out["decomposition_ms"] = *preparation.decomposition_ms;
-    if (!preparation.atomic_cluster.empty()) out["atomic_clusters"] = preparation.atomic_clusters;
+                        {"threads", c.threads},
+                        {"make_ms", c.make_ms}};
+    const PreparationRecord& preparation = c.preparation;
+    if (!preparation.distance_and_heat_ms.empty())
+      out["distance_and_heat_ms"] = preparation.distance_and_heat_ms.front();
+    if (!preparation.decomposition_ms.empty()) out["decomposition_ms"] = preparation.decomposition_ms.front();
+    if (preparation.atomic_clusters) out["atomic_clusters"] = *preparation.atomic_clusters;
     const auto add = [&](const char* name, const std::optional<std::uint64_t>& bytes) {
       if (!bytes) return;
       out[std::string(name) + "_bytes"] = *bytes;
       out[std::string(name) + "_bytes_per_triangle"] =
           static_cast<double>(*bytes) / static_cast<double>(input().mesh.triangle_count());
     };
-    add("peak", c.made.footprint.peak_bytes);
-    add("held", c.made.footprint.held_bytes);
+    add("peak", c.footprint.peak_bytes);
+    add("held", c.footprint.held_bytes);
     return out;
   }
 
-  ordered_json step_json(std::size_t s) const {
-    const Verified& verified = verified_[s];
-    ordered_json rows = ordered_json::array();
-    for (const Entrant& c : entrants_)
-      if (is_timed(c)) rows.push_back(row_json(c, s));
-    ordered_json out = {{"step", subject_.steps[s].frames},
-                        {"scene", scenes::plain_name(subject_.steps[s].scene)},
-                        {"starts", subject_.starts},
-                        {"embedded", verified.embedded},
-                        {"colliding", verified.colliding},
-                        {"first_contact", verified.first},
-                        {"verified",
-                         {{"ok", verified.failures.empty()},
-                          {"by_reference", verified.by_reference},
-                          {"by_each_other", subject_.starts.size() - verified.by_reference},
-                          {"failures", verified.failures}}},
-                        {"strategies", std::move(rows)}};
+  ordered_json step_json(std::size_t s) {
+    const SectionResult& result = *results_[s];
+    const VerificationRecord& verified = result.verification;
+    ordered_json rows = ordered_json::array(), first = rows, failures = rows, leads = rows;
+    for (std::size_t c = 0; c < contestants_.size(); ++c) {
+      rows.push_back(row_json(result, c));
+      for (const std::string& failure : verified.strategies[c].failures)
+        failures.push_back(result.rows[c].name + ", " + failure);
+    }
+    for (const std::size_t i : result.section.counted)
+      leads.push_back(scaled_.leads[i].last - scaled_.leads[i].first);
+    for (const std::optional<double>& time : result.first_times)
+      first.push_back(time ? ordered_json(*time) : ordered_json());
+    const auto starts = [&](const auto& holds) {
+      return std::ranges::count_if(result.section.counted, holds);
+    };
+    ordered_json out = {
+        {"step", subject_.steps[s].frames},
+        {"scene", scenes::plain_name(subject_.steps[s].scene)},
+        {"starts", subject_.starts},
+        {"leads", std::move(leads)},
+        {"embedded", starts([&](std::size_t i) { return measurement_->starts_embedded(i); })},
+        {"colliding", first.size() - static_cast<std::size_t>(std::ranges::count(first, ordered_json()))},
+        {"first_contact", std::move(first)},
+        {"verified",
+         {{"ok", verified.ok()},
+          {"by_reference", verified.intervals.size()},
+          {"by_each_other", subject_.starts.size() - verified.intervals.size()},
+          {"failures", std::move(failures)}}},
+        {"strategies", std::move(rows)}};
     if (is_thick_) {
       out["thickness"] = subject_.steps[s].edges;
-      out["length"] = subject_.steps[s].edges * edge_;
-      out["clear"] = verified.clear;
+      out["length"] = result.section.thickness;
+      out["clear"] = verified.intervals.size() - verified.unembedded.size();
     }
     return out;
   }
 
-  ordered_json row_json(const Entrant& c, std::size_t s) const {
-    ordered_json row = {{"name", c.row.name()}};
-    ordered_json counts = ordered_json::object();
-    for (const auto& [name, values] : c.counts[s])
+  static ordered_json row_json(const SectionResult& result, std::size_t c) {
+    const StrategyRecord& own = result.rows[c];
+    ordered_json row = {{"name", own.name}}, counts = ordered_json::object();
+    for (const auto& [name, values] : own.counts)
       counts[name] = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-    if (const Shortfall& lacking = c.lacking[s]; is_short(lacking))
-      row["shortfall"] = shortfall_text(lacking);
-    row["intervals"] = c.counts[s].empty() ? 0 : c.counts[s].begin()->second.size();
+    if (const auto lacking = shortfall(result.verification, result.verification.strategies[c]))
+      row["shortfall"] = shortfall_text(*lacking);
+    row["intervals"] = own.digests.size();
     row["counts"] = std::move(counts);
-    if (!verified_[s].failures.empty()) return row;  // no time without a verified answer
-    const TimeColumns& columns = c.ms[s].empty() ? c.once[s] : c.ms[s];
+    if (!result.verification.ok()) return row;  // no time without a verified answer
+    TimeColumns columns = own.ms;
+    if (columns.empty())  // not repeated
+      for (const std::optional<Counted>& once : result.counted[c])
+        if (once) append_times(once->report.ms, columns, 0);
     if (columns.empty()) {
       row["left_out"] =
           "takes over " + std::to_string(static_cast<int>(kTooLong)) + " ms for an earlier step";
       return row;
     }
     ordered_json ms = ordered_json::object();
-    std::vector<std::vector<double>> queries(columns.begin()->second.size());  // [repetition][interval]
-    for (const char* stage : kStages) {
-      const auto column = columns.find(stage);
-      if (column == columns.end()) continue;
-      std::vector<double> samples;
-      for (std::size_t r = 0; r < queries.size(); ++r) {
-        const std::vector<double>& times = column->second[r];
-        samples.push_back(mean(times));
-        queries[r].resize(times.size(), 0);
-        std::ranges::transform(queries[r], times, queries[r].begin(), std::plus());
-      }
-      ms[stage] = median(samples);
-    }
-    std::vector<double> means, medians;  // of a repetition's intervals
-    for (const std::vector<double>& query : queries) {
-      means.push_back(mean(query));
-      medians.push_back(median(query));
-    }
+    for (const std::string_view stage : kQueryStages)
+      if (const auto column = columns.find(std::string(stage)); column != columns.end())
+        ms[std::string(stage)] = median(of_repetitions(column->second, mean));
+    const auto queries = query_times(columns);
+    const std::vector<double> means = of_repetitions(queries, mean),
+                              medians = of_repetitions(queries, median);
     ms["total"] = median(means);
     ms["median_interval"] = median(medians);
     row["ms"] = std::move(ms);
@@ -360,24 +197,30 @@ class Measurement {
     return row;
   }
 
+  template <class Statistic>
+  static std::vector<double> of_repetitions(const std::vector<std::vector<double>>& times,
+                                            const Statistic& statistic) {
+    std::vector<double> out;
+    for (const std::vector<double>& intervals : times) out.push_back(statistic(intervals));
+    return out;
+  }
+
   const ScaleSubject& subject_;
   ScaleInput scaled_;
   double edge_;  // mean length at rest
   bool is_thick_;
-  std::vector<Entrant> entrants_;
+  std::vector<Contestant> contestants_;
   ordered_json left_out_ = ordered_json::array();  // rows that the surface does not allow, and why
-  std::vector<Verified> verified_;                 // by step
-  // By interval: whether its start is embedded, and with a thickness, clear.
-  std::vector<bool> embedded_;
+  std::optional<Measurement> measurement_;
+  std::vector<SectionResult*> results_;  // [steps]
 };
 
 }  // namespace
 
 ordered_json measure_subject(const ScaleSubject& subject, std::mt19937_64& random) {
-  Measurement measurement(subject);
-  measurement.verify();
-  measurement.time(random);
-  return measurement.json();
+  Study study(subject);
+  study.measure(random);
+  return study.json();
 }
 
 }  // namespace cscd::bench

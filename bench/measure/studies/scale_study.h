@@ -5,7 +5,7 @@
 
 #include "bench/measure/studies/scale_input.h"
 
-// One surface, its strategies and its steps, measured for the study of growing work (schema cscd.scale/1).
+// One surface, its strategies and its steps, measured for the study of growing work (schema cscd.scale/2).
 namespace cscd::bench {
 
 // Builds the surface, makes the strategies, verifies them, then times them interleaved. The result holds

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-// Derives what a record of growing work (schema cscd.scale/1) says beyond its measurements.
+// Derives what a record of growing work (schema cscd.scale/2) says beyond its measurements.
 namespace cscd::bench {
 
 // Exponents over what a study varies: triangles, bones, threads.

@@ -51,25 +51,4 @@ bool is_chain(const Rig& rig) {
   return !rig.parent.empty();
 }
 
-MomentSource::MomentSource(scenes::ClipHeader header, std::vector<Moment> moments,
-                           std::vector<Pair> intervals)
-    : header_(std::move(header)), moments_(std::move(moments)), intervals_(std::move(intervals)) {
-  for (std::size_t i = 0; i < moments_.size(); ++i)
-    scenes::check_frame(header_, i, {moments_[i].positions, moments_[i].bones}, nullptr);
-}
-
-scenes::ClipInterval MomentSource::load(std::size_t interval) {
-  const Moment& start = moments_[intervals_[interval].first];
-  const Moment& end = moments_[intervals_[interval].second];
-  scenes::ClipInterval out{Motion(start.positions, end.positions), std::nullopt};
-  if (!header_.bone_parent.empty()) out.bones = Rig::Interval{start.bones, end.bones};
-  return out;
-}
-
-scenes::FrameView MomentSource::load_frame(std::size_t frame) {
-  const Moment& moment =
-      moments_[frame < intervals_.size() ? intervals_[frame].first : intervals_.back().second];
-  return {moment.positions, moment.bones};
-}
-
 }  // namespace cscd::bench

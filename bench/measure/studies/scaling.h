@@ -35,23 +35,4 @@ std::vector<Bone> resampled_chain(std::span<const Bone> chain, std::size_t count
 // Whether every bone hangs on the one before it.
 bool is_chain(const Rig& rig);
 
-// Intervals between any two moments.
-class MomentSource final : public scenes::ClipSource {
- public:
-  using Pair = std::pair<std::size_t, std::size_t>;  // indices of moments
-  // Throws InputError for a moment whose sizes do not fit the header or that is not finite.
-  MomentSource(scenes::ClipHeader header, std::vector<Moment> moments, std::vector<Pair> intervals);
-
-  const scenes::ClipHeader& header() const override { return header_; }
-  std::size_t frame_count() const override { return intervals_.size() + 1; }
-  scenes::ClipInterval load(std::size_t interval) override;
-  // Where an interval starts; after the last one, where that ends.
-  scenes::FrameView load_frame(std::size_t frame) override;
-
- private:
-  scenes::ClipHeader header_;
-  std::vector<Moment> moments_;
-  std::vector<Pair> intervals_;
-};
-
 }  // namespace cscd::bench

@@ -5,7 +5,7 @@
                                      and the complete reference; it needs 5 GB of memory
 
 Verifies every answer before it is timed (`cscd scale`). Writes the record, and the charts and page of `scripts/figures scale`, to a
-new folder results/DATE-MACHINE-COMMIT-scale. Installs what is missing from Debian's packages, and takes half an hour on 2 idle cores
+new folder results/DATE-MACHINE-COMMIT-scale. Installs what is missing from Debian's packages, and takes up to an hour on 2 idle cores
 when everything is built.
 """
 
@@ -21,7 +21,7 @@ def main():
     words = [*(["--smoke"] if options.smoke else []), *(["--largest", "--study", "size"] if options.largest else []),
              *(["--scene", options.scene] if options.scene else [])]
     cscd = measured_program(
-        "a minute" if options.smoke else "an hour and a half, with 5 GB of memory," if options.largest else "half an hour")
+        "a minute" if options.smoke else "an hour and a half, with 5 GB of memory," if options.largest else "an hour")
     with new_results("scale" + "-smoke" * options.smoke + "-largest" * options.largest) as folder:
         call(cscd, "scale", *words, "--json", folder / "scale.json.gz")
         call(ROOT / "scripts" / "figures", "scale", folder / "scale.json.gz", "--program", cscd, "--out", folder)

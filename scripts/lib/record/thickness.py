@@ -5,7 +5,7 @@
 
 `base`, whose boxes grow by the thickness, `drvbc_fast` and `drvbc_fast_complete` answer the same intervals at thicknesses from 0 to 1 mean
 edge. Every answer is held against `base` with the exact test before it is timed (`cscd scale --study thickness`). Writes the record, and
-its page, to a new folder results/DATE-MACHINE-COMMIT-thickness. Takes ten minutes on 2 idle cores when everything is built, most of it `base`.
+its page, to a new folder results/DATE-MACHINE-COMMIT-thickness. Takes a quarter of an hour on 2 idle cores when everything is built, most of it `base`.
 """
 import json
 import pathlib
@@ -22,7 +22,7 @@ def main():
     caches = sorted(existing_folder(options.real).glob("*.h5")) if options.real else []
     if options.real and not caches:
         refuse(f"--real {options.real}: holds no point cache (.h5)")
-    cscd = measured_program("a minute" if options.smoke else "ten minutes")
+    cscd = measured_program("a minute" if options.smoke else "a quarter of an hour")
     plan = json.loads((ROOT / "bench" / "measure" / "studies" / "scale_plan.json").read_text())["smoke" if options.smoke else "full"]
     scenes = [*(options.scene.split(",") if options.scene else plan["thickness_scenes"]), *map(str, caches)]
     with new_results("thickness" + "-smoke" * options.smoke) as folder:
