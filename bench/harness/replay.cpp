@@ -33,16 +33,7 @@ std::vector<std::string> command_line(const ReplayRequest& options, const Input&
     words.insert(words.end(), {name, value});
   };
   add("--scene", options.scene);
-  add("--strategy", joined(options.strategies, ","));
-  add("--elementary", options.elementary);
-  add("--pipeline", options.pipeline);
-  add("--frames", options.frames);
-  add("--repetitions", std::to_string(options.repetitions));
-  add("--count-every", std::to_string(options.count_every));
-  add("--time-every", std::to_string(options.time_every));
-  add("--time-contacts", std::to_string(options.time_contacts));
-  add("--verify-every", std::to_string(options.verify_every));
-  add("--seed", std::to_string(options.seed));
+  echo_options(replay_options(), options, words);
   add("--threads", std::to_string(options.threads));
   if (input.ignored) {
     for (const auto& [first, second] : input.ignored->names) add("--ignore", first + ":" + second);
@@ -106,6 +97,34 @@ std::vector<std::size_t> intervals_to_time(Input& input, const IntervalRange& ra
 }
 
 }  // namespace
+
+std::span<const OptionRow<ReplayRequest>> replay_options() {
+  using R = ReplayRequest;
+  static constexpr std::pair<double, double> kPositive{1, 1'000'000};
+  static const OptionRow<R> rows[] = {
+      {"--strategy", &R::strategies,
+       "strategies or groups of them, with commas between; default all without a group. \"STRATEGY "
+       "--first\"\n"
+       "looks for the earliest contact alone"},
+      {"--elementary", &R::elementary, "the elementary test that is timed"},
+      {"--pipeline", &R::pipeline,
+       "`published` measures the paper's rows with the paper's code: scalar refit and orientation, its\n"
+       "filter alone, one feature pair after the other; `today` with this project's"},
+      {"--frames", &R::frames, "A:B, the intervals between frames A and B; default all"},
+      {"--repetitions", &R::repetitions, "how often each interval is timed", {{1, 1000}}},
+      {"--count-every", &R::count_every,
+       "take the counters of each K-th interval, and of those timed or verified", kPositive},
+      {"--time-every", &R::time_every, "time each K-th interval", kPositive},
+      {"--time-contacts",
+       &R::time_contacts,
+       "time at least so many intervals with contacts, where there are that many",
+       {{0, 1'000'000}}},
+      {"--verify-every", &R::verify_every,
+       "verify each K-th interval, from the first, and all that are timed", kPositive},
+      {"--seed", &R::seed, "of the order in which strategies run"},
+      {"--smoke", &R::smoke, "8 intervals in the middle, every 4th of them verified and timed twice"}};
+  return rows;
+}
 
 void require_sound(const ReplayRequest& request) {
   if (pipeline_named(request.pipeline) == Pipeline::published && request.elementary != kPublishedTest)

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "bench/harness/measurement.h"
 #include "bench/inputs/input.h"
+#include "bench/records/option_rows.h"
 #include "bench/records/record.h"
 
 // One measurement as a value, and its execution: a run of the whole input and each part of a divided run are
@@ -19,12 +20,15 @@ inline constexpr char kPublishedTest[] = "newton";  // the paper's elementary te
 struct ReplayRequest {
   std::string scene = "rope", elementary = kPublishedTest, pipeline = "today", frames;
   std::vector<std::string> strategies;  // names and groups; empty for all rows without a group
-  std::size_t repetitions = 5, count_every = 1, time_every = 1, time_contacts = 3, verify_every = 1;
-  std::uint64_t seed = 2014;
+  std::size_t repetitions = 5, count_every = 1, time_every = 1, time_contacts = 3, verify_every = 1,
+              seed = 2014;
   int threads = 1;
   bool smoke = false;
   ModelOptions model;
 };
+
+// The options that a record echoes, but for the input, the threads, and what belongs to the input.
+std::span<const OptionRow<ReplayRequest>> replay_options();
 
 // Throws InputError where names are not known or do not go together. It opens nothing.
 void require_sound(const ReplayRequest& request);

@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/measure/studies/tally.h"
 #include "bench/measure/studies/workload.h"
@@ -26,9 +27,8 @@ struct AccuracyOptions {
   std::string set, elementary = "all", sweep, output;
   std::vector<double> hardnesses;
   std::size_t every = 1, scene_queries = 0, open_queries = 0, hard_queries = 0, close_queries = 0,
-              random_queries = 0, sweep_queries = 0;
+              random_queries = 0, sweep_queries = 0, seed = 1;
   int passes = 3;
-  std::uint64_t seed = 1;
   bool smoke = false, force = false;
 };
 
@@ -49,34 +49,33 @@ void choose_size(AccuracyOptions& options) {
                                : std::vector{1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-16};
 }
 
+std::span<const OptionRow<AccuracyOptions>> accuracy_options() {
+  using A = AccuracyOptions;
+  static const OptionRow<A> rows[] = {
+      {"--scene", &A::scenes, "scenes whose pairs are asked (cscd list scenes)"},
+      {"--every", &A::every, "of their intervals, each K-th", {{1, 1'000'000}}},
+      {"--set", &A::set, "folder of the open query set, with its index.csv"},
+      {"--elementary", &A::elementary,
+       "tests with commas between them, or all; NAME@TOLERANCE[:STEPS] chooses parameters"},
+      {"--sweep", &A::sweep,
+       "further tests that see the first queries of every workload alone, but for the random families"},
+      {"--sweep-queries", &A::sweep_queries, "how many those are"},
+      {"--scene-queries", &A::scene_queries, "at most, of each scene and kind"},
+      {"--open-queries", &A::open_queries, "at most, of each folder and kind"},
+      {"--hard-queries", &A::hard_queries, "of each family and kind"},
+      {"--close-queries", &A::close_queries, "of each family at a distance and kind"},
+      {"--random-queries", &A::random_queries, "of each family, kind and hardness"},
+      {"--hardness", &A::hardnesses, "shares of a query's size by which it is off its lattice", {{1e-18, 1}}},
+      {"--passes", &A::passes, "how often every test is asked the same block", {{1, 1000}}},
+      {"--seed", &A::seed, "of the queries and of the order of the tests"}};
+  return rows;
+}
+
 // With everything that was left open filled in.
-std::vector<std::string> command_line(const AccuracyOptions& o) {
-  const auto joined = [](const auto& items) {
-    std::string text;
-    for (const auto& item : items) {
-      const std::string word = ordered_json(item).dump();
-      text += (text.empty() ? "" : ",") + (word.front() == '"' ? word.substr(1, word.size() - 2) : word);
-    }
-    return text;
-  };
+std::vector<std::string> command_line(AccuracyOptions options) {
+  options.set = std::filesystem::path(options.set).filename();  // not where it lies on this machine
   std::vector<std::string> words = {"cscd", "accuracy"};
-  const auto add = [&](const char* name, const std::string& value) {
-    if (!value.empty()) words.insert(words.end(), {name, value});
-  };
-  add("--scene", joined(o.scenes));
-  add("--every", std::to_string(o.every));
-  add("--set", std::filesystem::path(o.set).filename());  // not where it lies on this machine
-  add("--elementary", o.elementary);
-  add("--sweep", o.sweep);
-  add("--sweep-queries", std::to_string(o.sweep_queries));
-  add("--scene-queries", std::to_string(o.scene_queries));
-  add("--open-queries", std::to_string(o.open_queries));
-  add("--hard-queries", std::to_string(o.hard_queries));
-  add("--close-queries", std::to_string(o.close_queries));
-  add("--random-queries", std::to_string(o.random_queries));
-  add("--hardness", joined(o.hardnesses));
-  add("--passes", std::to_string(o.passes));
-  add("--seed", std::to_string(o.seed));
+  echo_options<AccuracyOptions>(accuracy_options(), options, words);
   return words;
 }
 
@@ -320,35 +319,7 @@ void add_accuracy(CLI::App& app) {
                          "it is\nnamed, and the pairs of scenes that get past bounds and filter. "
                          "Exit status 1 where a test is wrong in\n"
                          "what it proves, or the oracle contradicts a published truth.");
-  command->add_option("--scene", options->scenes, "scenes whose pairs are asked (cscd list scenes)")
-      ->delimiter(',');
-  command->add_option("--every", options->every, "of their intervals, each K-th")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--set", options->set, "folder of the open query set, with its index.csv");
-  command
-      ->add_option("--elementary", options->elementary,
-                   "tests with commas between them, or all; NAME@TOLERANCE[:STEPS] chooses parameters")
-      ->capture_default_str();
-  command->add_option(
-      "--sweep", options->sweep,
-      "further tests that see the first queries of every workload alone, but for the random families");
-  command->add_option("--sweep-queries", options->sweep_queries, "how many those are");
-  command->add_option("--scene-queries", options->scene_queries, "at most, of each scene and kind");
-  command->add_option("--open-queries", options->open_queries, "at most, of each folder and kind");
-  command->add_option("--hard-queries", options->hard_queries, "of each family and kind");
-  command->add_option("--close-queries", options->close_queries, "of each family at a distance and kind");
-  command->add_option("--random-queries", options->random_queries, "of each family, kind and hardness");
-  command
-      ->add_option("--hardness", options->hardnesses,
-                   "shares of a query's size by which it is off its lattice")
-      ->delimiter(',')
-      ->check(CLI::Range(1e-18, 1.0));
-  command->add_option("--passes", options->passes, "how often every test is asked the same block")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
-  command->add_option("--seed", options->seed, "of the queries and of the order of the tests")
-      ->capture_default_str();
+  add_options(*command, accuracy_options(), *options);
   command->add_flag("--smoke", options->smoke, "seconds instead of minutes; times mean nothing");
   command->add_option("--json", options->output, "where the record goes");
   command->add_flag("--force", options->force, "replace the output if it exists");

@@ -7,6 +7,7 @@
 #include "bench/answer/ignore.h"
 #include "bench/answer/options/answer_options.h"
 #include "bench/answer/options/model_options.h"
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/harness/contestant.h"
 #include "bench/harness/replay.h"
@@ -242,46 +243,8 @@ void add_replay_options(CLI::App& command, ReplayRequest& request) {
           kInputHelp)
       ->allow_extra_args(false)
       ->option_text("TEXT=" + request.scene);
-  command
-      .add_option("--strategy", request.strategies,
-                  "strategies or groups of them, with commas between; default all without a group. "
-                  "\"STRATEGY --first\"\n"
-                  "looks for the earliest contact alone")
-      ->delimiter(',');
-  command.add_option("--elementary", request.elementary, "the elementary test that is timed")
-      ->capture_default_str();
-  command
-      .add_option(
-          "--pipeline", request.pipeline,
-          "`published` measures the paper's rows with the paper's code: scalar refit and orientation, "
-          "its\nfilter alone, one feature pair after the other; `today` with this project's")
-      ->type_name("TEXT:{today,published}")
-      ->capture_default_str();
-  command.add_option("--repetitions", request.repetitions, "how often each interval is timed")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command
-      .add_option("--count-every", request.count_every,
-                  "take the counters of each K-th interval, and of those timed or verified")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command.add_option("--time-every", request.time_every, "time each K-th interval")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command
-      .add_option("--time-contacts", request.time_contacts,
-                  "time at least so many intervals with contacts, where there are that many")
-      ->check(CLI::Range(0, 1000000))
-      ->capture_default_str();
-  command.add_option("--frames", request.frames, "A:B, the intervals between frames A and B; default all");
-  command
-      .add_option("--verify-every", request.verify_every,
-                  "verify each K-th interval, from the first, and all that are timed")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command.add_option("--seed", request.seed, "of the order in which strategies run")->capture_default_str();
-  command.add_flag("--smoke", request.smoke,
-                   "8 intervals in the middle, every 4th of them verified and timed twice");
+  add_options(command, replay_options(), request);
+  command.get_option("--pipeline")->type_name("TEXT:{today,published}");
   add_threads_option(command, request.threads);
   add_model_options(command, request.model);
 }

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "bench/answer/options/model_options.h"
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/inputs/input.h"
 #include "bench/inputs/thickness.h"
@@ -33,12 +34,33 @@ struct ScaleOptions {
   std::vector<std::string> studies, scenes, strategies;
   std::vector<std::size_t> sizes;
   std::vector<double> steps;
-  std::size_t intervals = 0, repetitions = 0, reference_limit = 250'000;
-  std::uint64_t seed = 2014;
+  std::optional<std::size_t> intervals, repetitions;
+  std::size_t reference_limit = 250'000, seed = 2014;
   int threads = 1;
   bool smoke = false, largest = false, force = false;
   std::string output;
 };
+
+std::span<const OptionRow<ScaleOptions>> scale_options() {
+  using S = ScaleOptions;
+  static const OptionRow<S> rows[] = {
+      {"--study", &S::studies,
+       "size, step, bones, threads, contacts, thickness, with commas; default all but the last"},
+      {"--scene", &S::scenes,
+       "scenes with commas; default the six, and cloth for contacts and thickness; point caches\n"
+       "for thickness"},
+      {"--sizes", &S::sizes, "numbers of triangles, about", {{500, 20'000'000}}},
+      {"--largest", &S::largest, "775 thousand and 3.1 million triangles too"},
+      {"--steps", &S::steps, "lengths of steps, in frame steps", {{1e-3, 1000}}},
+      {"--strategy", &S::strategies, "strategies with commas; default by study"},
+      {"--intervals", &S::intervals, "of each scene, spread evenly", {{1, 1000}}},
+      {"--repetitions", &S::repetitions, "of each interval's timing", {{1, 1000}}},
+      {"--reference-up-to", &S::reference_limit,
+       "triangles up to which the reference answers and is timed on every interval"},
+      {"--seed", &S::seed, "of the order of the strategies"},
+      {"--smoke", &S::smoke, "small surfaces, in seconds; times mean nothing"}};
+  return rows;
+}
 
 // Returns the named rows that this build has, as packages may be missing. Throws InputError where the user
 // named a row that no build knows.
@@ -150,8 +172,8 @@ class Plan {
   std::vector<T> or_planned(const std::vector<T>& given, const char* key) const {
     return given.empty() ? data_.at(key).get<std::vector<T>>() : given;
   }
-  std::size_t or_planned(std::size_t given, const char* key) const {
-    return given > 0 ? given : data_.at(key).get<std::size_t>();
+  std::size_t or_planned(const std::optional<std::size_t>& given, const char* key) const {
+    return given ? *given : data_.at(key).get<std::size_t>();
   }
   void add(ScaleSubject subject, const char* intervals = "intervals") {
     // A variant with contacts may be shorter than its scene.
@@ -232,28 +254,11 @@ double estimated_minutes(std::span<const ScaleSubject> all) {
   return seconds / 60;
 }
 
-std::vector<std::string> command_line(const ScaleOptions& o, std::span<const ScaleSubject> all) {
+std::vector<std::string> command_line(ScaleOptions options, std::span<const ScaleSubject> all) {
+  options.repetitions = all.front().repetitions;
   std::vector<std::string> words = {"cscd", "scale"};
-  const auto add = [&](const char* name, const auto& values) {
-    std::string text;
-    for (const auto& value : values) {
-      const std::string word = ordered_json(value).dump();
-      text += (text.empty() ? "" : ",") + (word.front() == '"' ? word.substr(1, word.size() - 2) : word);
-    }
-    if (!text.empty()) words.insert(words.end(), {name, text});
-  };
-  if (o.smoke) words.push_back("--smoke");
-  if (o.largest) words.push_back("--largest");
-  add("--study", o.studies);
-  add("--scene", o.scenes);
-  add("--sizes", o.sizes);
-  add("--steps", o.steps);
-  add("--strategy", o.strategies);
-  if (o.intervals > 0) add("--intervals", std::vector{o.intervals});
-  add("--repetitions", std::vector{all.front().repetitions});
-  add("--reference-up-to", std::vector{o.reference_limit});
-  add("--seed", std::vector{o.seed});
-  add("--threads", std::vector{o.threads});
+  echo_options<ScaleOptions>(scale_options(), options, words);
+  words.insert(words.end(), {"--threads", std::to_string(options.threads)});
   return words;
 }
 
@@ -345,34 +350,9 @@ void add_scale(CLI::App& app) {
       "Every answer is held against the complete reference before anything is timed; on meshes above\n"
       "--reference-up-to on one interval a step, and the others against each other. Exit status 1 where an\n"
       "answer is wrong. \"STRATEGY --first\" looks for the earliest contact alone.");
-  command->add_option("--study", options->studies, "with commas; default all but the last")
-      ->type_name("TEXT:{" + study_names(",") + "}")
-      ->delimiter(',');
-  command
-      ->add_option("--scene", options->scenes,
-                   "scenes with commas; default the six, and cloth for contacts and thickness; point caches\n"
-                   "for thickness")
-      ->delimiter(',');
-  command->add_option("--sizes", options->sizes, "numbers of triangles, about")
-      ->delimiter(',')
-      ->check(CLI::Range(500, 20'000'000));
-  command->add_flag("--largest", options->largest, "775 thousand and 3.1 million triangles too");
-  command->add_option("--steps", options->steps, "lengths of steps, in frame steps")
-      ->delimiter(',')
-      ->check(CLI::Range(1e-3, 1000.0));
-  command->add_option("--strategy", options->strategies, "strategies with commas; default by study")
-      ->delimiter(',');
-  command->add_option("--intervals", options->intervals, "of each scene, spread evenly")
-      ->check(CLI::Range(1, 1000));
-  command->add_option("--repetitions", options->repetitions, "of each interval's timing")
-      ->check(CLI::Range(1, 1000));
-  command
-      ->add_option("--reference-up-to", options->reference_limit,
-                   "triangles up to which the reference answers and is timed on every interval")
-      ->capture_default_str();
-  command->add_option("--seed", options->seed, "of the order of the strategies")->capture_default_str();
+  add_options(*command, scale_options(), *options);
+  command->get_option("--study")->type_name("TEXT:{" + study_names(",") + "}");
   add_threads_option(*command, options->threads);
-  command->add_flag("--smoke", options->smoke, "small surfaces, in seconds; times mean nothing");
   command->add_option("--json", options->output, "where the record goes");
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->callback([options] { run_scale(*options); });
