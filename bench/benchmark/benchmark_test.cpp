@@ -252,6 +252,9 @@ TEST_F(PublicBenchmark, JudgesWholeAnswers) {
   const Score lost = judged_with([](IntervalAnswers& one) { one.contacts->pop_back(); });
   EXPECT_EQ(lost.misses, 1u);
   EXPECT_EQ(lost.broken, 1u);
+  EXPECT_EQ(lost.kept + 1, lost.contacts);
+  EXPECT_FALSE(is_short(clean.shortfall()));
+  EXPECT_TRUE(is_short(lost.shortfall()));
   const Score late = judged_with([](IntervalAnswers& one) { one.contacts->front().time = 1; });
   EXPECT_EQ(late.late, 1u);
   const Score start = judged_with([](IntervalAnswers& one) { one.starts_embedded = !*one.starts_embedded; });
@@ -339,8 +342,11 @@ TEST_F(PublicBenchmark, IsAnsweredByStrategies) {
   ASSERT_LT(closed, 40u);
   const Score base = scored("base", 40), complete = scored("drvbc_fast_complete", 40);
   EXPECT_EQ(base.misses + complete.misses, 0u);
+  EXPECT_FALSE(is_short(base.shortfall()) || is_short(complete.shortfall()));
   EXPECT_EQ(base.expected, complete.expected);
-  EXPECT_EQ(scored("base --first", 40).misses, 0u);
+  const Score first = scored("base --first", 40);
+  EXPECT_EQ(first.misses, 0u);
+  EXPECT_TRUE(is_short(first.shortfall())) << "whoever lists the earliest contacts alone has a mark";
   scored("drvbc_fast", closed);
   scored("drvbc", boned);
 }

@@ -198,6 +198,9 @@ TEST_F(ScaleProgram, KeepsARecordOfSizesThatFollowsItsSchema) {
       record({"--smoke", "--study", "size", "--scene", "rope", "--sizes", "1000,3000,9000", "--threads", "2"},
              "sizes");
   EXPECT_EQ(schema_violation(out, "scale.schema.json"), "");
+  EXPECT_EQ(out.at("command").dump(),
+            R"(["cscd","scale","--study","size","--scene","rope","--sizes","1000,3000,9000",)"
+            R"("--repetitions","2","--reference-up-to","250000","--seed","2014","--smoke","--threads","2"])");
   ASSERT_EQ(out.at("subjects").size(), 3u);
   for (const auto& subject : out.at("subjects")) {
     EXPECT_EQ(subject.at("study"), "size");
