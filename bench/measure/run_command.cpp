@@ -13,7 +13,7 @@
 #include "bench/harness/replay.h"
 #include "bench/inputs/input.h"
 #include "bench/inputs/thickness.h"
-#include "bench/measure/cells/cells.h"
+#include "bench/measure/shards/shards.h"
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"
 #include "bench/records/record.h"
@@ -36,9 +36,9 @@ struct RunOptions {
   ThicknessRequest thickness;
   std::string output;
   bool force = false, counts = false;
-  // Where results of cells are kept. Without a folder, the run is not divided.
-  std::string cells, worker;
-  std::size_t cell_intervals = 100;
+  // Where results of shards are kept. Without a folder, the run is not divided.
+  std::string shards, worker;
+  std::size_t shard_intervals = 100;
 };
 
 constexpr std::size_t kListedFailures = 5;  // of a row; the record holds all
@@ -131,10 +131,10 @@ Replay replay_of(const RunOptions& options, Input& input, const ReplayRequest& r
 }
 
 Record measured(const RunOptions& options, Input& input, const Replay& replay) {
-  if (options.cells.empty()) return execute(input, replay);
-  const std::vector<RunCell> cells = divide(input, replay, options.cell_intervals);
-  measure_cells(input, cells, {}, options.cells);
-  return join(replay, cells, options.cells);
+  if (options.shards.empty()) return execute(input, replay);
+  const std::vector<RunShard> shards = divide(input, replay, options.shard_intervals);
+  measure_shards(input, shards, {}, options.shards);
+  return join(replay, shards, options.shards);
 }
 
 // Whether every strategy kept its promise.
@@ -191,15 +191,15 @@ bool run_each(const RunOptions& options, const std::vector<std::string>& inputs)
   return ok;
 }
 
-// Measures this worker's cells of one scene. Whether every strategy kept its promise in them.
+// Measures this worker's shards of one scene. Whether every strategy kept its promise in them.
 bool work(const RunOptions& options) {
   const Worker worker = parse_worker(options.worker);
   Input input = open(options, options.request);
-  const std::vector<RunCell> cells =
-      divide(input, replay_of(options, input, options.request), options.cell_intervals);
-  const bool ok = measure_cells(input, cells, worker, options.cells);
-  std::printf("worker %s is done; %zu of %zu cells have no result yet\n", options.worker.c_str(),
-              missing_results(cells, options.cells), cells.size());
+  const std::vector<RunShard> shards =
+      divide(input, replay_of(options, input, options.request), options.shard_intervals);
+  const bool ok = measure_shards(input, shards, worker, options.shards);
+  std::printf("worker %s is done; %zu of %zu shards have no result yet\n", options.worker.c_str(),
+              missing_results(shards, options.shards), shards.size());
   return ok;
 }
 
@@ -207,7 +207,7 @@ void run(const RunOptions& options) {
   const bool is_worker = !options.worker.empty();
   require_sound(options.request);  // before anything is opened
   require_fit(options.thickness, elementary_test_named(options.request.elementary));
-  if (!options.cells.empty()) make_folder(options.cells, "--cells");
+  if (!options.shards.empty()) make_folder(options.shards, "--shards");
   if (is_worker) {
     if (!work(options)) throw kVerificationFailed;
     return;
@@ -260,7 +260,7 @@ void add_run(CLI::App& app) {
       "  cscd run --scene all --json records         a record of every scene into that folder\n"
       "  cscd run --input FOLDER --json records      the same of every point cache (.h5) in FOLDER\n"
       "  cscd run --smoke --json smoke.json          a few intervals, in seconds\n"
-      "  cscd run --cells cells --json rope.json     goes on where the same command was interrupted\n\n"
+      "  cscd run --shards shards --json rope.json     goes on where the same command was interrupted\n\n"
       "First every strategy answers the verified intervals with the exact elementary test and is judged "
       "against\n"
       "the complete reference under its own guarantee. If one fails, the exit status is 1 and the record "
@@ -285,22 +285,22 @@ void add_run(CLI::App& app) {
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->add_flag("--counts", options->counts,
                     "verdicts, counters and digests alone, which every machine repeats to the bit; no times");
-  CLI::Option* cells =
+  CLI::Option* shards =
       command
-          ->add_option("--cells", options->cells,
-                       "divide the run into cells, and keep the result of each in this folder: what is\n"
+          ->add_option("--shards", options->shards,
+                       "divide the run into shards, and keep the result of each in this folder: what is\n"
                        "there is not measured again")
           ->group("A long run");
-  command->add_option("--cell-intervals", options->cell_intervals, "intervals of a cell")
+  command->add_option("--shard-intervals", options->shard_intervals, "intervals of a shard")
       ->check(CLI::Range(1, 1000000000))
       ->capture_default_str()
-      ->needs(cells)
+      ->needs(shards)
       ->group("A long run");
   command
       ->add_option("--worker", options->worker,
-                   "I/N: measure every N-th cell from the I-th on, and write no record; the same command\n"
+                   "I/N: measure every N-th shard from the I-th on, and write no record; the same command\n"
                    "without --worker measures what is missing and writes it")
-      ->needs(cells)
+      ->needs(shards)
       ->excludes(json)
       ->each([json](const std::string&) { json->required(false); })
       ->group("A long run");

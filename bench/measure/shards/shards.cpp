@@ -1,4 +1,4 @@
-#include "bench/measure/cells/cells.h"
+#include "bench/measure/shards/shards.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -54,7 +54,7 @@ std::vector<std::size_t> within(const std::vector<std::size_t>& ascending, const
   return {std::ranges::lower_bound(ascending, range.first), std::ranges::lower_bound(ascending, range.last)};
 }
 
-// A number that this process draws once. It tells how many processes measured the cells of a record.
+// A number that this process draws once. It tells how many processes measured the shards of a record.
 std::uint64_t process_number() {
   static const std::uint64_t number = std::uint64_t{std::random_device{}()} << 32 | std::random_device{}();
   return number;
@@ -84,48 +84,48 @@ Worker parse_worker(const std::string& text) {
   throw InputError("--worker " + text + ": is no worker; write I/N with 1 <= I <= N, such as 1/3");
 }
 
-std::vector<RunCell> divide(Input& input, const Replay& replay, std::size_t cell_intervals) {
+std::vector<RunShard> divide(Input& input, const Replay& replay, std::size_t shard_intervals) {
   const ordered_json content = content_of(input), code = code_version();
-  std::vector<RunCell> cells;
-  for (std::size_t first = replay.range.first; first < replay.range.last; first += cell_intervals) {
-    const IntervalRange range{first, std::min(first + cell_intervals, replay.range.last)};
-    RunCell cell{{}, replay};
-    cell.replay.range = range;
-    Section& own = cell.replay.section;
+  std::vector<RunShard> shards;
+  for (std::size_t first = replay.range.first; first < replay.range.last; first += shard_intervals) {
+    const IntervalRange range{first, std::min(first + shard_intervals, replay.range.last)};
+    RunShard shard{{}, replay};
+    shard.replay.range = range;
+    Section& own = shard.replay.section;
     for (std::vector<std::size_t>* list : {&own.verified, &own.counted, &own.timed})
       *list = within(*list, range);
     if (own.counted.empty()) continue;
     const ordered_json decisive = {content,     replay.command, replay.kind == ReplayKind::timings,
                                    range.first, range.last,     own.verified,
                                    own.counted, own.timed,      code};
-    cell.file_name = scenes::digest(decisive.dump()) + ".json.gz";
-    cells.push_back(std::move(cell));
+    shard.file_name = scenes::digest(decisive.dump()) + ".json.gz";
+    shards.push_back(std::move(shard));
   }
-  return cells;
+  return shards;
 }
 
-std::size_t missing_results(std::span<const RunCell> cells, const fs::path& folder) {
+std::size_t missing_results(std::span<const RunShard> shards, const fs::path& folder) {
   std::error_code ignored;
   return static_cast<std::size_t>(std::ranges::count_if(
-      cells, [&](const RunCell& cell) { return !fs::exists(folder / cell.file_name, ignored); }));
+      shards, [&](const RunShard& shard) { return !fs::exists(folder / shard.file_name, ignored); }));
 }
 
-bool measure_cells(Input& input, std::span<const RunCell> cells, Worker worker, const fs::path& folder) {
+bool measure_shards(Input& input, std::span<const RunShard> shards, Worker worker, const fs::path& folder) {
   remove_forsaken_files(folder);
   bool ok = true;
-  for (std::size_t i = worker.number - 1; i < cells.size(); i += worker.count) {
-    const RunCell& cell = cells[i];
-    const fs::path path = folder / cell.file_name;
+  for (std::size_t i = worker.number - 1; i < shards.size(); i += worker.count) {
+    const RunShard& shard = shards[i];
+    const fs::path path = folder / shard.file_name;
     if (fs::exists(path)) {
       ok = read_record(path).verification.ok() && ok;
       continue;
     }
-    Record record = execute(input, cell.replay);
-    if (cell.replay.kind == ReplayKind::timings) record.environment["process"] = process_number();
+    Record record = execute(input, shard.replay);
+    if (shard.replay.kind == ReplayKind::timings) record.environment["process"] = process_number();
     ok = record.verification.ok() && ok;
     write_unless_there(path, gzipped(json_text(to_json(record))));
-    const IntervalRange& range = cell.replay.range;
-    std::printf("cell %zu of %zu, intervals %zu to %zu: %s\n", i + 1, cells.size(), range.first,
+    const IntervalRange& range = shard.replay.range;
+    std::printf("shard %zu of %zu, intervals %zu to %zu: %s\n", i + 1, shards.size(), range.first,
                 range.last - 1, path.c_str());
     std::fflush(stdout);
   }

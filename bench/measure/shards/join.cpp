@@ -3,7 +3,7 @@
 #include <set>
 #include <string>
 
-#include "bench/measure/cells/cells.h"
+#include "bench/measure/shards/shards.h"
 #include "core/base/error.h"
 
 namespace cscd::bench {
@@ -15,11 +15,11 @@ using nlohmann::ordered_json;
 constexpr std::size_t kListedDifferences = 200;  // as many as a single run lists
 constexpr char kAgain[] = "; remove the file, and run the command again";
 
-Record read_result(const RunCell& cell, const fs::path& path) {
+Record read_result(const RunShard& shard, const fs::path& path) {
   Record record = read_record(path);
-  if (record.command != cell.replay.command || record.counted_intervals != cell.replay.section.counted ||
-      record.timed_intervals != cell.replay.section.timed)
-    throw InputError("result " + path.string() + ": its command or its intervals are not those of its cell" +
+  if (record.command != shard.replay.command || record.counted_intervals != shard.replay.section.counted ||
+      record.timed_intervals != shard.replay.section.timed)
+    throw InputError("result " + path.string() + ": its command or its intervals are not those of its shard" +
                      kAgain);
   return record;
 }
@@ -36,7 +36,7 @@ void require_same_place(ordered_json first, const fs::path& a, ordered_json seco
       throw InputError(
           "results " + a.string() + " and " + b.string() + ": differ in their environment (" + key + ": " +
           value.dump() + " and " + (second.contains(key) ? second[key].dump() : "nothing") +
-          "); measure all cells with one build" + (first.contains("cpu") ? " on one kind of machine" : ""));
+          "); measure all shards with one build" + (first.contains("cpu") ? " on one kind of machine" : ""));
 }
 
 template <class T>
@@ -47,10 +47,10 @@ void append(const std::vector<T>& more, std::vector<T>& to) {
 void require_same_columns(bool same, const std::string& strategy, const fs::path& path) {
   if (!same)
     throw InputError("result " + path.string() + ": its columns of " + strategy +
-                     " are not those of the cells before it" + kAgain);
+                     " are not those of the shards before it" + kAgain);
 }
 
-// Appends the rows of a cell. A cell in which nothing is timed has no times.
+// Appends the rows of a shard. A shard in which nothing is timed has no times.
 void append(const TimeColumns& more, const std::string& strategy, const fs::path& path, TimeColumns& to) {
   if (more.empty()) return;
   if (to.empty()) {
@@ -81,13 +81,13 @@ void add_instructions(const std::optional<double>& more, std::size_t more_interv
 }
 
 // `timed` is how many timed intervals `to` has already.
-void append(const StrategyRecord& more, const RunCell& cell, const fs::path& path, std::size_t timed,
+void append(const StrategyRecord& more, const RunShard& shard, const fs::path& path, std::size_t timed,
             StrategyRecord& to) {
   append(more.preparation.distance_and_heat_ms, to.preparation.distance_and_heat_ms);
   append(more.preparation.decomposition_ms, to.preparation.decomposition_ms);
   keep_largest(more.footprint.peak_bytes, to.footprint.peak_bytes);
   keep_largest(more.footprint.held_bytes, to.footprint.held_bytes);
-  add_instructions(more.footprint.instructions, cell.replay.section.timed.size(), to.footprint.instructions,
+  add_instructions(more.footprint.instructions, shard.replay.section.timed.size(), to.footprint.instructions,
                    timed);
   require_same_columns(std::ranges::equal(more.counts, to.counts, {}, &CountColumns::value_type::first,
                                           &CountColumns::value_type::first),
@@ -141,14 +141,14 @@ void leave_out_measurements(StrategyRecord& strategy) {
 
 }  // namespace
 
-Record join(const Replay& whole, std::span<const RunCell> cells, const fs::path& folder) {
+Record join(const Replay& whole, std::span<const RunShard> shards, const fs::path& folder) {
   std::set<ordered_json> processes;
   fs::path first_path;
   Record joined;
   bool ok = true;
-  for (const RunCell& cell : cells) {
-    const fs::path path = folder / cell.file_name;
-    Record next = read_result(cell, path);
+  for (const RunShard& shard : shards) {
+    const fs::path path = folder / shard.file_name;
+    Record next = read_result(shard, path);
     if (next.environment.contains("process")) processes.insert(next.environment["process"]);
     ok = ok && next.verification.ok();
     if (first_path.empty()) {
@@ -159,7 +159,7 @@ Record join(const Replay& whole, std::span<const RunCell> cells, const fs::path&
     require_same_place(joined.environment, first_path, next.environment, path);
     append(next.verification, joined.verification);
     for (std::size_t s = 0; s < joined.strategies.size() && ok; ++s)
-      append(next.strategies[s], cell, path, joined.timed_intervals.size(), joined.strategies[s]);
+      append(next.strategies[s], shard, path, joined.timed_intervals.size(), joined.strategies[s]);
     append(next.counted_intervals, joined.counted_intervals);
     append(next.timed_intervals, joined.timed_intervals);
   }
