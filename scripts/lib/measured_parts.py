@@ -207,11 +207,11 @@ def sweep(results):
                   [[f"`{name}`", number(query[name]), number(prepare[name]), days(intervals * query[name])] for name in SWEEP]
                   + [["all", number(count_ms), number(prepare_ms), days(intervals * count_ms)]])
     lines += ["", *table(["sweep", "core-days", "days on 100 cores"], [
-        [f"counts of every interval, each {SWEEP_VERIFY_EVERY}th verified, cells of {cell:.0f} intervals", days(counts),
+        [f"counts of every interval, each {SWEEP_VERIFY_EVERY}th verified, shards of {cell:.0f} intervals", days(counts),
          days(counts / 100)],
         ["of that: queries / verification / preparing", f"{days(intervals * count_ms)} / "
          f"{days(intervals / SWEEP_VERIFY_EVERY * verify_ms)} / {days(intervals / cell * prepare_ms)}", ""],
-        [f"times of each {SWEEP_TIME_EVERY}st interval, {SWEEP_REPETITIONS} repetitions, verified, a cell a character",
+        [f"times of each {SWEEP_TIME_EVERY}st interval, {SWEEP_REPETITIONS} repetitions, verified, a shard a character",
          days(timings), days(timings / 100)]])]
     return "\n".join(lines + [
         "", f"Verifying an interval takes {number(verify_ms)} ms; that is with all "
