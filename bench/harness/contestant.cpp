@@ -70,12 +70,11 @@ Contestant make_contestant(Input& input, const StrategyRow& row, const Elementar
 }
 
 std::vector<Contestant> make_contestants(Input& input, std::span<const StrategyRow> rows,
-                                         const ElementaryTest& exact, const ElementaryTest& timed,
-                                         std::optional<std::size_t> interval) {
+                                         const ElementaryTest& exact, const ElementaryTest& timed) {
   Progress progress("preparing " + input.name, rows.size());
   std::vector<Contestant> contestants;
   for (const StrategyRow& row : rows) {
-    contestants.push_back(make_contestant(input, row, exact, timed, interval));
+    contestants.push_back(make_contestant(input, row, exact, timed));
     progress.advance();
   }
   return contestants;

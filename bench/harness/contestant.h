@@ -36,8 +36,7 @@ StrategyInput measured_setup(const Input& input, const Strategy& strategy, const
 Contestant make_contestant(Input& input, const StrategyRow& row, const ElementaryTest& exact,
                            const ElementaryTest& timed, std::optional<std::size_t> interval = std::nullopt);
 std::vector<Contestant> make_contestants(Input& input, std::span<const StrategyRow> rows,
-                                         const ElementaryTest& exact, const ElementaryTest& timed,
-                                         std::optional<std::size_t> interval = std::nullopt);
+                                         const ElementaryTest& exact, const ElementaryTest& timed);
 
 // Says why a strategy cannot leave out what an input ignores; nothing where it can, or where nothing is
 // ignored.

@@ -188,12 +188,20 @@ Record execute(Input& input, const Replay& replay) {
   record.timed_intervals = replay.section.timed;
   const bool is_timed = !replay.section.timed.empty();
   std::vector<Contestant> contestants =
-      make_contestants(input, chosen_rows(input, replay.request.strategies, record.pipeline), exact, timed,
-                       is_timed ? std::optional(replay.section.timed.front()) : std::nullopt);
+      make_contestants(input, chosen_rows(input, replay.request.strategies, record.pipeline), exact, timed);
   Measurement measurement({input, contestants, exact, timed});
   SectionResult& measured = measurement.verify(replay.section);
   std::mt19937_64 random(record.seed);
-  if (is_timed && measured.verification.ok()) measurement.time({replay.request.repetitions, random, true});
+  if (is_timed && measured.verification.ok()) {
+    measurement.time({replay.request.repetitions, random, true});
+    for (std::size_t c = 0; c < contestants.size(); ++c) {
+      Footprint& footprint = measured.rows[c].footprint;
+      const std::optional<double> instructions = footprint.instructions;
+      footprint =
+          make_contestant(input, contestants[c].row, timed, timed, record.timed_intervals.front()).footprint;
+      footprint.instructions = instructions;
+    }
+  }
   if (!measured.verification.ok())  // what was prepared is all that is left
     for (StrategyRecord& row : measured.rows)
       row.counts.clear(), row.digests.clear(), row.first_times.clear(), row.ms.clear();
