@@ -7,17 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "bench/harness/contestant.h"
 #include "bench/strategies/catalogue.h"
 #include "bench/testing/test_shell.h"
 #include "scenes/random/random_interval.h"
 
 namespace cscd::bench {
 namespace {
-
-struct Answered {
-  Report report;
-  ContactSet found;
-};
 
 Answered answered(const Strategy& strategy, const StrategyInput& setup,
                   const scenes::ClipInterval& interval) {
