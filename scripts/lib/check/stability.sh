@@ -32,7 +32,7 @@ part exact core/elementary/exact/{exact,algebraic,closeness,polynomial,touch}
 part starts core/elementary/exact/static_contact
 part meshes core/detect/{double_filter,carried_pairs,compose,contact,feature_owners,filter_block,no_contact_before} \
   core/mesh/triangle_mesh core/geometry/feature_distance
-part thread_pool core/base/thread_pool
+part base core/base/{memory,thread_pool}
 part exclusions core/detect/exclusions
 part bounds core/hierarchy/{bounds,loose_vertices,scalar_bounds,tree,vertex_bounds}
 part plain core/detect/plain_sign
@@ -51,11 +51,11 @@ for variant in "${variants[@]}"; do
   key=${variant//[^a-z0-9+=]/}
   objects=()
   for name in "${parts[@]}"; do
-    ${CMAKE_CXX_COMPILER_LAUNCHER:-} "${words[@]}" -std=c++20 -DNDEBUG -ffp-contract=off -w -Wno-psabi -I "$root" -isystem /usr/include/eigen3 \
+    ${CMAKE_CXX_COMPILER_LAUNCHER:-} "${words[@]}" -std=c++20 -DNDEBUG -DCSCD_TBB -ffp-contract=off -w -Wno-psabi -I "$root" -isystem /usr/include/eigen3 \
       -c "$name.cpp" -o "$key-$name.o"
     objects+=("$key-$name.o")
   done
-  "${words[@]}" "${objects[@]}" -ltbb -o "digest-$key"
+  "${words[@]}" "${objects[@]}" -lgmpxx -lgmp -ltbb -o "digest-$key"
   "./digest-$key" queries/*.csv > "$key.txt"
   first=${first:-$key}
   if cmp -s "$first.txt" "$key.txt"; then
