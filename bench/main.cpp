@@ -9,7 +9,6 @@
 #include <string>
 #include <unistd.h>
 
-#include "bench/answer/answer.h"
 #include "bench/cli/interface_commands.h"
 #include "bench/command_line/command.h"
 #include "bench/command_line/standard_streams.h"
@@ -102,7 +101,7 @@ int run(int argc, char** argv) {
   } catch (const cscd::InputError& error) {
     return complain(error.what());
   } catch (const cscd::MemoryShortage& shortage) {
-    return complain(cscd::bench::too_many_pairs(shortage, "").what());
+    return complain(std::string(shortage.finding()) + "; give a smaller --thickness or a smaller input");
   } catch (const std::bad_alloc&) {
     return complain(
         "out of memory; use a smaller input, a larger --memory for a model file, or a machine with more");

@@ -4,6 +4,8 @@
 
 #include "bench/strategies/catalogue.h"
 #include "bench/strategies/strategy_row.h"
+#include "core/base/error.h"
+#include "core/base/memory.h"
 
 namespace cscd::bench {
 namespace {
@@ -14,6 +16,13 @@ AnswerOptions as_input_says(AnswerOptions options, const Input& input) {
   return options;
 }
 
+// What a user is told who asked for more pairs than memory holds. `where` names the step.
+InputError too_many_pairs(const MemoryShortage& shortage, const std::string& where) {
+  return InputError(where + ": " + std::string(shortage.finding()) +
+                    "; give a smaller --thickness, leave neighbours out with --exclude-rings, ask for the "
+                    "earliest alone with --first, or allow a model file a larger --memory");
+}
+
 }  // namespace
 
 IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick) {
@@ -22,12 +31,6 @@ IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick) {
   if (is_thick ? !answer.touching.empty() : answer.time().has_value()) return IntervalVerdict::touches;
   if (answer.time()) return IntervalVerdict::close;
   return answer.found.contacts.empty() ? IntervalVerdict::clear : IntervalVerdict::undecided;
-}
-
-InputError too_many_pairs(const MemoryShortage& shortage, const std::string& where) {
-  return InputError(where + (where.empty() ? "" : ": ") + std::string(shortage.finding()) +
-                    "; give a smaller --thickness, leave neighbours out with --exclude-rings, ask for the "
-                    "earliest alone with --first, or allow a model file a larger --memory");
 }
 
 Crossings all_meetings(const IntervalAnswer& answer) {
@@ -76,8 +79,10 @@ IntervalAnswer Answerer::answer(std::size_t index, const scenes::ClipInterval& i
   const bool is_thick = input_.thickness.length > 0;
   try {
     session_.step(interval.motion, interval.bones ? &*interval.bones : nullptr, answer);
+    const Stopwatch telling;
     tell_touching_from_crossing(interval.motion, answer);
     if (is_thick) tell_touching_from_close(interval.motion, answer);
+    answer.wall_ms += telling.milliseconds();
   } catch (const MemoryShortage& shortage) {
     throw too_many_pairs(shortage, "interval " + std::to_string(index));
   }

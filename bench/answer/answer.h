@@ -2,11 +2,8 @@
 
 #include <map>
 #include <optional>
-#include <string>
 
 #include "bench/inputs/input.h"
-#include "core/base/error.h"
-#include "core/base/memory.h"
 #include "core/session/interval_verdict.h"
 #include "core/session/session.h"
 #include "core/session/true_motion.h"
@@ -38,9 +35,6 @@ struct IntervalAnswer : StepAnswer {
 
 // The verdict that goes by what the answer holds.
 IntervalVerdict verdict_of(const IntervalAnswer& answer, bool is_thick);
-
-// The error that a user gets who asked for more pairs than memory holds. `where` begins it and may be empty.
-InputError too_many_pairs(const MemoryShortage& shortage, const std::string& where);
 
 // All pairs that meet at the start, whether they cross or touch, and whether they are left out of the answer
 // or not.

@@ -214,7 +214,7 @@ std::string verdict_predicate(const ClipAnswer& answer) {
   text +=
       apart + ", first at " + moment_text(input, first.moment) + ": " + meeting_text(first.names, first.how);
   // Of what meets in the first frame, the next time that it meets is news.
-  const bool at_start = first.moment.interval == 0 && first.moment.time == 0;
+  const bool at_start = first.moment.interval == s.first_index && first.moment.time == 0;
   if (const auto& again = s.first_after_parting; at_start && again)
     text += "; once it had parted, again at " + moment_text(input, again->moment) + ": " +
             meeting_text(again->names, again->how);

@@ -158,7 +158,8 @@ void ClipAnswerer::answer_all(const std::string& task, bool with_ways,
     last = answerers_.front().answer(range_.last, resting);
     last.found.contacts.clear();  // those of the pose are no contacts of an interval
     last.touching.clear();
-    here = events_->add(last, pose.positions, {.ways = with_ways});
+    here = events_->add(last, pose.positions, {.ways = with_ways, .pieces = request_.new_contacts});
+    if (request_.new_contacts) keep_new(input_, here.pieces, last);
   }
   for (ClipAnswer& answer : answers_) {
     if (!input_.is_one_pose) answer.last_pose = last;

@@ -44,8 +44,8 @@ class ClipAnswerer {
   // Where all vertices are at a second of the clip in its true motion, which has to be asked for.
   std::span<const Vec3> true_positions_at(double seconds) { return true_motion_->positions_at(seconds); }
 
-  // Answers all poses in order and hands each to `visit`. Progress is shown of `task`. Regions have the ways
-  // of their vertices where those are wanted.
+  // Answers all poses in order and hands each to `visit`. Progress is shown of `task`. With
+  // `with_ways`, each region holds the displacement out of the other piece for each of its vertices.
   void answer_all(const std::string& task, bool with_ways,
                   const std::function<void(const AnsweredPose&)>& visit);
 

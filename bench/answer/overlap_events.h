@@ -64,8 +64,8 @@ class OverlapEvents {
     bool ways = false;    // of all vertices, in the regions
     bool pieces = false;  // also where the answer has no contacts
   };
-  // The answer gets the events of its contacts, and of its pairs that only touch, those of pieces that cross
-  // count as crossing.
+  // Writes into the answer to which event each contact belongs. Pairs that only touch, by triangles, count as
+  // crossing from here on where their pieces cross.
   Here add(IntervalAnswer& answer, std::span<const Vec3> start, const Wanted& wanted);
 
   // All events, in the order in which they begin.

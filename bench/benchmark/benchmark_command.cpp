@@ -136,7 +136,7 @@ void add_answer(CLI::App& benchmark) {
     for (const std::string& failure : entry.failures)
       std::printf("  FAILED, so without a time: %s\n", failure.c_str());
     output.commit(to_json(entry.answers).dump() + "\n");
-    if (!entry.failures.empty()) throw kVerificationFailed;
+    if (!entry.failures.empty()) end_with(ExitStatus::failed);
   });
 }
 

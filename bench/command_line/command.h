@@ -11,8 +11,6 @@
 
 namespace cscd::bench {
 
-inline constexpr ExitStatus kVerificationFailed = ExitStatus::failed;
-
 void add_query(CLI::App& app);
 void add_view(CLI::App& app);
 void add_inspect(CLI::App& app);

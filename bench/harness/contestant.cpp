@@ -52,7 +52,7 @@ Contestant make_contestant(Input& input, const StrategyRow& row, const Elementar
   };
   if (&exact != &timed) contestant.judged = made(exact);
   std::optional<scenes::ClipInterval> asked;
-  std::optional<MemoryWatch> memory;
+  std::optional<ResidentMemory> memory;
   if (interval) {
     asked = input.clip->load(*interval);  // the source's own buffers are not the strategy's
     memory.emplace();

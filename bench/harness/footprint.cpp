@@ -33,13 +33,13 @@ std::optional<std::uint64_t> growth(std::optional<std::uint64_t> before, std::op
 
 }  // namespace
 
-MemoryWatch::MemoryWatch() {
+ResidentMemory::ResidentMemory() {
   malloc_trim(0);
   peak_is_ours_ = reset_peak();
   resident_ = status_bytes("VmRSS");
 }
 
-Footprint MemoryWatch::footprint() const {
+Footprint ResidentMemory::footprint() const {
   Footprint out;
   if (peak_is_ours_) out.peak_bytes = growth(resident_, status_bytes("VmHWM"));
   malloc_trim(0);

@@ -8,9 +8,9 @@
 namespace cscd::bench {
 
 // Watches the resident memory of this process, beginning without what was freed before.
-class MemoryWatch {
+class ResidentMemory {
  public:
-  MemoryWatch();
+  ResidentMemory();
   // What came on top since then: at its peak, and now. It has no instructions.
   Footprint footprint() const;
 

@@ -195,7 +195,7 @@ void Measurement::time(const Timing& timing) {
     for (const std::size_t i : result.section.timed)
       if (!std::ranges::binary_search(result.section.counted, i))
         throw InputError(setup_.where(i) + " of " + input.name +
-                         " is to be timed but was not verified; verify every timed interval");
+                         " is to be timed but was not counted; count every timed interval");
     std::vector<std::size_t>& own = repeated.emplace_back();
     for (std::size_t c = 0; c < setup_.contestants.size(); ++c)
       if (result.mean_ms(c) <= timing.most_ms) own.push_back(c);
@@ -266,8 +266,7 @@ void Measurement::expect_verified(bool embedded, std::size_t interval) {
 
 // Times on all timed intervals what it takes to know whether the start is embedded: the test of the start,
 // for the rows that rely on it, and for the row that answers from starts that are not known, what seeing the
-// start adds to its query. Both are timed in a pass of their own after all queries. In between, their data
-// would push that of the strategies out of the caches, and the next query would be slower for that.
+// start adds to its query.
 void Measurement::time_starts(SectionResult& result, std::size_t repetition, EmbeddingTest& test) {
   Crossings start;
   for (const std::size_t i : result.section.timed) {
@@ -282,13 +281,14 @@ void Measurement::time_starts(SectionResult& result, std::size_t repetition, Emb
       const Strategy& strategy = *contestant.row.strategy;
       if (needs_embedded_start(strategy.guarantee))
         append_time("embedding", taken, result.rows[c].ms, repetition);
-      if (&strategy != &complete_fallback() || contestant.row.first) continue;
+      const std::optional<Counted>& counted = result.counted[c][place_of(i, result)];
+      if (&strategy != &complete_fallback() || contestant.row.first || !counted) continue;
       interval = lead_to(i, contestant.row, *contestant.timed);
       stream_positions(interval.motion);
       Step step = setup_.input.step(interval);
       step.crossings = &start;
       ask(*contestant.timed, contestant.row, step, timed_);
-      if (digest(timed_.found) != result.counted[c][place_of(i, result)]->digest)
+      if (digest(timed_.found) != counted->digest)
         throw std::logic_error("interval " + std::to_string(i) + " of " + setup_.input.name + ": " +
                                std::string(strategy.name) + " finds other contacts when it sees the start");
       expect_verified(start.total == 0, i);

@@ -28,7 +28,7 @@ struct Section {
   std::vector<std::size_t> timed;     // those of them that are timed
   double thickness = 0;               // length within which features count as contacts; 0 for touching
   std::vector<bool> asked = {};       // [contestants]; empty: all of them
-  // Otherwise the reference, where it is a contestant, answers the verified intervals alone.
+  // False: the reference answers the verified intervals alone, even where it is a contestant.
   bool reference_answers_all = true;
 };
 
@@ -73,7 +73,8 @@ bool same_culling(const Report& a, const Report& b);
 
 class Measurement {
  public:
-  // Whatever is called `where` begins the text of a failure; `leads` are [intervals].
+  // `where` names an interval at the beginning of a failure's text. `leads`, [intervals], holds for each
+  // interval those that warm adaptive strategies up for it.
   struct Setup {
     Input& input;
     std::span<Contestant> contestants;  // made for the input with these tests
@@ -104,10 +105,10 @@ class Measurement {
   // alike. A section ends with a failure at the first contestant whose contacts or counters differ from those
   // that were counted. Before each timed query all positions are streamed; how long that took is the column
   // `streaming`. After all queries, the exact test whether the start is embedded is timed as often, where the
-  // timing asks for it. What it took is the stage `embedding` of the rows that promise the first contact,
-  // since they promise nothing without it. The stage `start` of the row that answers from starts that are not
-  // known is what its own exact test of the pairs that may cross there takes, beside its query. Throws
-  // InputError where an interval is to be timed that was not counted.
+  // timing asks for it. What it took is the stage `embedding` of the rows that rely on an embedded start. The
+  // stage `start` of the row that answers from starts that are not known is what its own exact test of the
+  // pairs that may cross there takes, beside its query. Throws InputError where an interval is to be timed
+  // that was not counted.
   void time(const Timing& timing);
 
   // Whether an interval starts embedded, by a test that shares no culling with the timed one.

@@ -129,8 +129,8 @@ class Study {
         published_ += published.has_value();
         contradicted_ += published && *published != truths.back().contact.has_value();
       }
-      // The rows of the sweep are many and slow: they see the first queries alone, of what has no parameter
-      // of its own.
+      // The rows of the sweep are many and slow. They see the first queries of each workload alone, and none
+      // of workloads with a hardness.
       const bool all = !workload.hardness && queries < options_.sweep_queries;
       const std::size_t rows = all ? asked.size() : whole;
       const std::size_t seen = all ? std::min(block.size(), options_.sweep_queries - queries) : block.size();
@@ -299,7 +299,7 @@ void run_accuracy(AccuracyOptions options) {
     throw std::logic_error("the record does not follow its schema: " + violation);
   if (output) output->commit(json_text(record));
   study.print();
-  if (!study.kept()) throw kVerificationFailed;
+  if (!study.kept()) end_with(ExitStatus::failed);
 }
 
 }  // namespace

@@ -117,7 +117,7 @@ void run_elementary(const ElementaryOptions& options) {
     for (const Outcome& outcome : outcomes) document["tests"].push_back(to_json(outcome, queries));
   }
   if (output) output->commit(document.dump(1) + "\n");
-  if (!kept) throw kVerificationFailed;
+  if (!kept) end_with(ExitStatus::failed);
 }
 
 }  // namespace

@@ -209,7 +209,7 @@ void run(const RunOptions& options) {
   require_fit(options.thickness, elementary_test_named(options.request.elementary));
   if (!options.shards.empty()) make_folder(options.shards, "--shards");
   if (is_worker) {
-    if (!work(options)) throw kVerificationFailed;
+    if (!work(options)) end_with(ExitStatus::failed);
     return;
   }
   std::error_code unknown;
@@ -219,13 +219,13 @@ void run(const RunOptions& options) {
   else if (options.request.scene == kAllScenes)
     several = scenes::all_scene_names();
   if (!several.empty()) {
-    if (!run_each(options, several)) throw kVerificationFailed;
+    if (!run_each(options, several)) end_with(ExitStatus::failed);
     return;
   }
   OutputFile output(options.output, options.force);
   const bool ok = run_one(options, options.request, output);
   std::printf("record: %s\n", options.output.c_str());
-  if (!ok) throw kVerificationFailed;
+  if (!ok) end_with(ExitStatus::failed);
 }
 
 // The options that say what is measured. `request` must live as long as the command.

@@ -326,7 +326,7 @@ void run_scale(const ScaleOptions& options) {
   if (const std::string violation = schema_violation(record, "scale.schema.json"); !violation.empty())
     throw std::logic_error("the record does not follow its schema: " + violation);
   if (output) output->commit(json_text(record));
-  if (!ok) throw kVerificationFailed;
+  if (!ok) end_with(ExitStatus::failed);
 }
 
 }  // namespace

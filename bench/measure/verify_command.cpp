@@ -46,7 +46,7 @@ void add_verify(CLI::App& app) {
     std::printf("%s", describe(summary).c_str());
     for (const RandomFailure& failure : summary.failures)
       std::printf("FAILED %s\n", write_failure(failure, options->folder).c_str());
-    if (!summary.failures.empty()) throw kVerificationFailed;
+    if (!summary.failures.empty()) end_with(ExitStatus::failed);
   });
 }
 

@@ -44,9 +44,9 @@ std::size_t most_start_pairs(const std::string& text) {
 
 // What was said of a clip, or of all clips of a file.
 struct Said {
-  IntervalVerdict verdict = IntervalVerdict::clear;  // of a clip that touches or crosses, if there is one
+  IntervalVerdict verdict = IntervalVerdict::clear;  // the worst of any clip
   bool too_deep = false;                             // for --fail-deeper-than
-  std::vector<std::string> apart;                    // of what the verdict does not speak
+  std::vector<std::string> apart;                    // clips that the verdict does not count, as sentences
 };
 
 Said say_clip(const QueryOptions& options, Input input, JsonStream* document, bool is_brief = false) {

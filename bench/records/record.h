@@ -26,7 +26,7 @@ inline constexpr std::string_view kRunSchema = "cscd.run/2";
 using CountColumns = std::map<std::string, std::vector<std::uint64_t>>;
 // [repetition][timed interval], milliseconds. A stage that a strategy does not have has no column.
 // `streaming` is no stage: it is what streaming all positions once from memory took before the query.
-// `embedding`, of rows that promise the first contact, is outside the query too: what deciding exactly took
+// `embedding`, of rows that rely on an embedded start, is outside the query too: what deciding exactly took
 // whether the start is embedded, which those rows rely on. All of them share its samples. `start`, of the
 // complete row that answers where the start is not known, is what finding the crossings at the start adds to
 // its query.

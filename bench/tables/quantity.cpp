@@ -16,7 +16,6 @@ using nlohmann::ordered_json;
 constexpr std::string_view kStartTest = "embedding";
 // The stage in which the fallback, a complete row, finds which triangles cross at the start.
 constexpr std::string_view kStartSeen = "start";
-constexpr std::array kStagesOfQuery = {"refit", "rv_update", "traversal", "elementary"};
 
 // Why there is no figure.
 struct Missing {
@@ -97,7 +96,7 @@ Amount time_amount(const StrategyRecord& strategy, const std::string& stages, co
   std::vector<std::string> parts = split(stages, '+');
   if (const auto query = std::ranges::find(parts, "query"); query != parts.end()) {
     parts.erase(query);
-    parts.insert(parts.begin(), kStagesOfQuery.begin(), kStagesOfQuery.end());
+    parts.insert(parts.begin(), kQueryStages.begin(), kQueryStages.end());
   }
   for (const std::string& stage : parts) {
     const auto column = strategy.ms.find(stage);
@@ -234,7 +233,9 @@ Measured measure_over(const ordered_json& definition, const Record& record, cons
   const Measured amount = measure(definition, record), by = measure(definition, divisor);
   if (!amount.value) return {{}, {}, amount.reason};
   if (!by.value || *by.value == 0) return {{}, {}, by.value ? "the divisor is zero" : by.reason};
-  return {*amount.value / *by.value, {}, {}};
+  Measured ratio{*amount.value / *by.value, {}, {}};
+  ratio.marked = amount.marked || by.marked;
+  return ratio;
 }
 
 }  // namespace cscd::bench

@@ -31,9 +31,8 @@ inline constexpr char kMarkNote[] =
 //   quantity   scene.triangles, scene.vertices, scene.bones
 //              preparation.distance_and_heat_ms, .decomposition_ms, .atomic_clusters
 //              counts.A+B...      a statistic over all intervals of the sum of counters
-//              ms.A+B...          a statistic over the timed intervals of the sum of stages, one a
-//              repetition;
-//                                 the stage `query` is a whole query with refit
+//              ms.A+B...          a statistic over the timed intervals of the sum of stages, one for each
+//                                 repetition; the stage `query` is a whole query with refit
 //              ms.streaming       the same of streaming all positions once from memory
 //              verification.recall, .first_contacts
 //              footprint.peak_bytes, .held_bytes, .instructions

@@ -60,9 +60,9 @@ json strategy_of(const Record& record, const StrategyRecord& strategy) {
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += uncertain->second[i];
     counts["not_positive"] = sum;
   }
-  for (const char* stage : {"refit", "rv_update", "traversal", "elementary"})
-    if (const auto samples = stage_samples(record, strategy, stage); !samples.empty())
-      stages[stage] = median(samples);
+  for (const std::string_view stage : kQueryStages)
+    if (const auto samples = stage_samples(record, strategy, std::string(stage)); !samples.empty())
+      stages[std::string(stage)] = median(samples);
   return {{"name", strategy.name},
           {"guarantee", strategy.guarantee},
           {"counts", counts},

@@ -17,7 +17,8 @@ std::string beside_reference(const std::string& strategy, const Record& record) 
   if (!faster.value || *faster.value <= 0) return "";
   const bool slower = *faster.value < 1;
   return "  " + figure_text(slower ? 1 / *faster.value : *faster.value) + " times " +
-         (slower ? "slower" : "faster") + " than " + kReference;
+         (slower ? "slower" : "faster") + (faster.marked ? std::string(kShortfallMark) : "") + " than " +
+         kReference;
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ std::vector<ShapedTable> page_lists(std::span<const Record> records);
 // With each table as it stands on a page in Markdown, without its title, legend and note.
 nlohmann::ordered_json shaped_json(std::span<const ShapedTable> tables);
 
-// The table alone. Nothing in it but the names of lines is Markdown.
+// The table alone. Names of lines and of strategies stand in it as code.
 std::string markdown_of(const ShapedTable& table);
 
 }  // namespace cscd::bench

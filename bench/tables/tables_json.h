@@ -15,8 +15,8 @@ namespace cscd::bench {
 inline constexpr std::string_view kTablesSchema = "cscd.tables/2";
 
 // The one document of figures: one object a cell and a claim, each with its text, and the tables as people
-// read them, with those of pages. What shows figures places these texts. Valid under
-// bench/tables/tables.schema.json.
+// read them, with those of pages. Terminal, LaTeX, Markdown, scripts and the page place these texts as they
+// are. Valid under bench/tables/tables.schema.json.
 nlohmann::ordered_json tables_json(std::span<const FilledTable> tables, std::span<const ShapedTable> shaped,
                                    std::span<const ClaimResult> claims, std::span<const Record> records);
 // The same cells for spreadsheets, one line a cell.

@@ -211,7 +211,10 @@ std::string fast_text(std::span<const Record> records, const std::string& fast, 
     if (!median.value) continue;
     medians.push_back(*median.value);
     marked = marked || median.marked;
-    if (const Measured ratio = median_query(than, record, fast); ratio.value) ratios.push_back(*ratio.value);
+    const Measured ratio = median_query(than, record, fast);
+    if (!ratio.value) continue;
+    ratios.push_back(*ratio.value);
+    marked = marked || ratio.marked;
   }
   if (medians.empty()) return "";
   const std::string mark = marked ? std::string(kShortfallMark) : "";

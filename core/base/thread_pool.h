@@ -8,7 +8,7 @@
 namespace cscd {
 
 // A group of threads that share out the parts of one piece of work. The caller's result must not depend on
-// which thread does which part. The file pool.cpp is the only place in the project that knows oneTBB.
+// which thread does which part. The file thread_pool.cpp is the only place in the project that knows oneTBB.
 class ThreadPool {
  public:
   // Makes a pool of `threads` threads, the calling thread included; `threads` is at least 1. At most as many

@@ -69,8 +69,8 @@ class TrueMotion {
   // Answers a span at whose start nothing meets but what is left out.
   TrueAnswer answer(double from, double to);
   // Two triangles that meet at a time and are not left out: two that cross, or where none do, two that touch.
-  // Where places are not known, whatever it says, an answer about a span that starts or ends there is
-  // undecided.
+  // Where the places of vertices are not known at that time, an answer about a span that starts or ends there
+  // is undecided, whatever meets.
   struct Meeting {
     CrossingPair pair;
     bool crosses;

@@ -13,8 +13,9 @@ inline unsigned long trailing_zeros(const Integer& x) {
   return boost::multiprecision::lsb(abs(x));
 }
 
-// x is about the returned fraction times 2^exponent, rounded towards 0. The fraction is 0 for 0, and
-// otherwise its magnitude lies in [1/2, 1).
+// Splits x into a fraction and a power of two: returns the fraction, rounded towards 0 to a double, and sets
+// `exponent`, so that x is about fraction * 2^exponent. The magnitude of the fraction lies in [1/2, 1); it is
+// 0 for x = 0.
 double truncated(const Integer& x, long& exponent);
 
 }  // namespace cscd::exact

@@ -1,8 +1,8 @@
+#include "core/base/thread_pool.h"
+
 #include <atomic>
 #include <gtest/gtest.h>
 #include <vector>
-
-#include "core/base/thread_pool.h"
 
 namespace cscd {
 namespace {
