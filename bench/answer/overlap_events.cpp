@@ -7,6 +7,7 @@
 
 #include "core/base/sort_unique.h"
 #include "core/base/stopwatch.h"
+#include "core/elementary/exact/static_contact.h"
 
 namespace cscd::bench {
 namespace {
@@ -151,7 +152,8 @@ void OverlapEvents::extend(OverlapEvent& event, const Overlaps& all, const Overl
 }
 
 // Pieces may cross along edges of both alone, so that no two triangles pass through each other. A point of
-// one then lies off the other's skin, inside of it.
+// one then lies off the other's skin, inside of it. Where faces rest on each other, that proves nothing,
+// because what lies inside there follows from how ties are broken.
 void OverlapEvents::tell_crossing_pieces(std::span<const Vec3> start, Overlaps& all,
                                          IntervalAnswer& answer) const {
   if (answer.start_touching.total == 0) return;
@@ -163,6 +165,10 @@ void OverlapEvents::tell_crossing_pieces(std::span<const Vec3> start, Overlaps& 
     std::vector<CrossingPair> pairs;
     for_each_segment(all.crossing, overlap, [&](const auto& segment) { pairs.push_back(pair_of(segment)); });
     const auto crosses = [&](const CrossingPair& pair) { return answer.start.contains(pair); };
+    const auto rests = [&](const CrossingPair& pair) {
+      return lie_on_each_other(input_.mesh, start, pair.first, pair.second) == -1;
+    };
+    if (std::ranges::none_of(pairs, crosses) && std::ranges::any_of(pairs, rests)) overlap.depth.lower = 0;
     if (overlap.depth.lower > 0 || std::ranges::any_of(pairs, crosses))
       std::ranges::copy_if(pairs, std::back_inserter(crossing),
                            [&](const CrossingPair& pair) { return answer.start_touching.contains(pair); });

@@ -54,6 +54,26 @@ std::set<ComponentPair> copied_components(const TriangleMesh& mesh, std::span<co
   return copies;
 }
 
+// [components]: whether each is closed and consistently oriented, so that it has an inside.
+std::vector<bool> components_with_inside(const TriangleMesh& mesh) {
+  std::vector<bool> out(static_cast<std::size_t>(mesh.component_count()), true);
+  if (mesh.closed_and_oriented()) return out;
+  for (std::size_t e = 0; e < mesh.edge_count(); ++e) {
+    const EdgeId edge{static_cast<std::int32_t>(e)};
+    const std::span<const TriangleId> at = mesh.triangles_at(edge);
+    const auto along = [&](TriangleId t) {  // how often the triangle runs along the edge in its direction
+      int count = 0;
+      for (std::size_t i = 0; i < 3; ++i)
+        count +=
+            mesh.corners(t)[i] == mesh.ends(edge)[0] && mesh.corners(t)[(i + 1) % 3] == mesh.ends(edge)[1];
+      return count;
+    };
+    if (at.size() != 2 || along(at[0]) == along(at[1]))
+      out[static_cast<std::size_t>(mesh.component(at.front()))] = false;
+  }
+  return out;
+}
+
 }  // namespace
 
 std::vector<CrossingPair> carriers(const TriangleMesh& mesh, const FeaturePair& pair) {
@@ -70,9 +90,17 @@ std::vector<CrossingPair> carriers(const TriangleMesh& mesh, const FeaturePair& 
 Meetings tell_meetings_apart(const TriangleMesh& mesh, std::span<const Vec3> positions,
                              const Crossings& met) {
   const std::set<ComponentPair> copies = copied_components(mesh, positions, met);
+  std::vector<bool> has_inside;  // [components]
+  const auto shares_inside = [&](const CrossingPair& pair) {
+    if (lie_on_each_other(mesh, positions, pair.first, pair.second) != 1) return false;
+    if (has_inside.empty()) has_inside = components_with_inside(mesh);
+    const ComponentPair both = components_of(mesh, pair);
+    return has_inside[static_cast<std::size_t>(both.first)] &&
+           has_inside[static_cast<std::size_t>(both.second)];
+  };
   Meetings out;
   for (const CrossingPair& pair : met.pairs) {
-    const bool crosses = triangles_cross(mesh, positions, pair.first, pair.second) ||
+    const bool crosses = triangles_cross(mesh, positions, pair.first, pair.second) || shares_inside(pair) ||
                          copies.contains(components_of(mesh, pair));
     (crosses ? out.crossing : out.touching).pairs.push_back(pair);
   }

@@ -16,9 +16,10 @@ std::vector<CrossingPair> carriers(const TriangleMesh& mesh, const FeaturePair& 
 
 // Pairs of triangles that meet in a pose, in two kinds; both sorted.
 struct Meetings {
-  // They pass through each other (triangles_cross), or they belong to two components of which one is a copy:
-  // every triangle of that one lies exactly on a triangle of the other, as a coat that was copied from a
-  // body.
+  // They pass through each other (triangles_cross). Or they lie in one plane and face the same way, as walls
+  // of two boxes that are flush: of closed surfaces, what lies behind both is then inside both. Or they
+  // belong to two components of which one is a copy: every triangle of that one lies exactly on a triangle of
+  // the other, as a coat that was copied from a body.
   Crossings crossing;
   Crossings touching;  // they only touch: nothing lies in anything
 };

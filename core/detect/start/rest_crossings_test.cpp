@@ -1,8 +1,10 @@
 #include "core/detect/start/rest_crossings.h"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include "core/detect/start/embedding.h"
+#include "core/elementary/exact/static_contact.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {
@@ -129,6 +131,30 @@ TEST(Meetings, AreToldApartByWhetherTrianglesPassThroughEachOther) {
     EXPECT_EQ(kinds.crossing.total > 0, distance < 2) << distance;
     EXPECT_TRUE(kinds.crossing.all_kept() && kinds.touching.all_kept());
   }
+}
+
+// Of two equal boxes that are shifted along an axis, no two triangles need pass through each other. Boxes
+// that stand side by side only touch, and so does what has no inside. Mutations: the facing is not looked at;
+// open surfaces count as closed.
+TEST(Meetings, FlushWallsOfClosedSurfacesCross) {
+  const test::Shape box = test::box();
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double shift : {-1.0, -0.5, 0.25, 0.5, 0.75, 1.0}) {
+      const test::Shape both = test::together(box, test::moved(box, shift * Vec3::Unit(axis)));
+      const auto told = [&](const test::Shape& shape) {
+        const TriangleMesh mesh = shape.mesh();
+        const Crossings met = EmbeddingTest(mesh, shape.positions).find_all(shape.positions, kAllPairs);
+        return tell_meetings_apart(mesh, shape.positions, met);
+      };
+      const Meetings kinds = told(both);
+      EXPECT_EQ(kinds.crossing.total > 0, std::abs(shift) < 1) << axis << " " << shift;
+      EXPECT_GT(kinds.touching.total, 0u) << axis << " " << shift;
+      test::Shape open = both;
+      open.triangles.pop_back();
+      const TriangleMesh mesh = open.mesh();
+      for (const CrossingPair& pair : told(open).crossing.pairs)
+        EXPECT_TRUE(triangles_cross(mesh, open.positions, pair.first, pair.second)) << axis << " " << shift;
+    }
 }
 
 }  // namespace

@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/rounding.h"
 #include "core/elementary/exact/touch.h"
@@ -267,6 +268,37 @@ bool triangles_cross(const TriangleMesh& mesh, std::span<const Vec3> positions, 
   Triple p = corners(a), q = corners(b);
   if (!part_by_plane(q, p) || !part_by_plane(p, q)) return false;
   return orientation(p[0], p[1], q[0], q[1]) < 0 && orientation(p[0], p[2], q[2], q[0]) < 0;
+}
+
+int lie_on_each_other(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId a, TriangleId b) {
+  Vec3 p[3], q[3];
+  for (std::size_t i = 0; i < 3; ++i)
+    p[i] = positions[+mesh.corners(a)[i]], q[i] = positions[+mesh.corners(b)[i]];
+  for (const Vec3& corner : q)
+    if (orientation(p[0], p[1], p[2], corner) != 0) return 0;
+  // Twice the signed area of a triangle, seen along axis k, has the sign of the volume that it spans with a
+  // point right above its first corner.
+  const auto turn = [](const Vec3& u, const Vec3& v, const Vec3& w, int k) {
+    constexpr double kInf = std::numeric_limits<double>::infinity();
+    const bool is_largest = u[k] == std::numeric_limits<double>::max();  // then the point is right below
+    Vec3 beside = u;
+    beside[k] = std::nextafter(u[k], is_largest ? -kInf : kInf);
+    return is_largest ? -orientation(u, v, w, beside) : orientation(u, v, w, beside);
+  };
+  for (int k = 0; k < 3; ++k) {
+    const int facing_p = turn(p[0], p[1], p[2], k), facing_q = turn(q[0], q[1], q[2], k);
+    if (facing_p == 0 || facing_q == 0) continue;
+    // Open convex polygons of a plane are apart if and only if an edge of one has the other behind it.
+    const auto has_behind = [&](const Vec3(&own)[3], int facing, const Vec3(&other)[3]) {
+      for (std::size_t i = 0; i < 3; ++i)
+        if (std::ranges::all_of(
+                other, [&](const Vec3& x) { return facing * turn(own[i], own[(i + 1) % 3], x, k) <= 0; }))
+          return true;
+      return false;
+    };
+    return has_behind(p, facing_p, q) || has_behind(q, facing_q, p) ? 0 : facing_p * facing_q;
+  }
+  return 0;  // one of them has no area
 }
 
 }  // namespace cscd

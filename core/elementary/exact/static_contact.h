@@ -32,4 +32,8 @@ bool triangles_meet(const TriangleMesh& mesh, std::span<const Vec3> positions, T
 // only touch. Exact.
 bool triangles_cross(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId a, TriangleId b);
 
+// How two triangles of a mesh lie on each other: 0 unless they lie in one plane and share more than points of
+// their borders; then +1 if they face the same way, and -1 if they face each other. Exact.
+int lie_on_each_other(const TriangleMesh& mesh, std::span<const Vec3> positions, TriangleId a, TriangleId b);
+
 }  // namespace cscd

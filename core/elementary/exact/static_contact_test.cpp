@@ -8,6 +8,8 @@
 #include <random>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/elementary/exact/exact.h"
 #include "core/elementary/exact/test_brute_oracle.h"
@@ -389,6 +391,47 @@ TEST(TrianglesCross, IfTheyShareASegmentThatIsNoPoint) {
   }
   EXPECT_GT(crossing, 5000u);
   EXPECT_GT(touching, 5000u);
+}
+
+// In planes of several slopes. Mutations: corners are not compared with the plane; triangles that share an
+// edge lie on each other; facings are not compared.
+TEST(LieOnEachOther, IfTheySharePartOfTheirInsides) {
+  struct Case {
+    const char* what;
+    std::array<int, 6> other;  // x and y of its corners
+    int expected;
+  };
+  constexpr Case kCases[] = {
+      {"the same", {0, 0, 4, 0, 0, 4}, 1},
+      {"named from another corner", {0, 4, 0, 0, 4, 0}, 1},
+      {"turned over", {0, 0, 0, 4, 4, 0}, -1},
+      {"within it", {1, 1, 2, 1, 1, 2}, 1},
+      {"about it", {-4, -4, 9, -4, -4, 9}, 1},
+      {"each has corners outside of the other", {1, -1, 3, -1, 1, 2}, 1},
+      {"on the other side of an edge", {4, 0, 4, 4, 0, 4}, 0},
+      {"shares an edge from outside", {-4, 0, 0, 0, 0, 4}, 0},
+      {"shares a corner", {0, 0, -4, 0, 0, -4}, 0},
+      {"apart", {5, 0, 9, 0, 5, 4}, 0},
+      {"has no area", {0, 0, 2, 2, 4, 4}, 0},
+  };
+  const TriangleMesh mesh(
+      {Triangle{VertexId{0}, VertexId{1}, VertexId{2}}, Triangle{VertexId{3}, VertexId{4}, VertexId{5}}}, 6);
+  for (const auto& [slope_x, slope_y] : {std::pair(0, 0), std::pair(1, -2), std::pair(1'000'000, 3)})
+    for (const int axis : {0, 1, 2})
+      for (const Case& one : kCases)
+        for (const double height : {0.0, 0x1p-30}) {
+          std::vector<Vec3> at;
+          const auto put = [&](int x, int y, double above) {
+            Vec3 p;
+            p[axis] = x, p[(axis + 1) % 3] = y, p[(axis + 2) % 3] = slope_x * x + slope_y * y + above;
+            at.push_back(p);
+          };
+          put(0, 0, 0), put(4, 0, 0), put(0, 4, 0);
+          for (std::size_t i = 0; i < 6; i += 2) put(one.other[i], one.other[i + 1], height);
+          const int expected = height > 0 ? 0 : one.expected;
+          EXPECT_EQ(lie_on_each_other(mesh, at, TriangleId{0}, TriangleId{1}), expected) << one.what;
+          EXPECT_EQ(lie_on_each_other(mesh, at, TriangleId{1}, TriangleId{0}), expected) << one.what;
+        }
 }
 
 }  // namespace
