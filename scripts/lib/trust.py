@@ -28,6 +28,9 @@ FOLDER = ROOT / "results" / "trust"
 LIB = ROOT / "scripts" / "lib"
 # Files and folders that have moved since records were written.
 MOVED = {
+    "core/base/team": "core/base/thread_pool", "core/fast/prove/stars": "core/fast/certify/one_rings",
+    "core/radial/exact_orientation": "core/radial/test_exact_orientation",
+    "bench/measure/strategies/": "bench/strategies/",
     "core/base/output_target": "scenes/base/output_target", "core/base/temporaries": "scenes/base/temporaries",
     "core/detect/verify": "bench/strategies/verify",
     "core/elementary/certified/integer_polynomial": "core/elementary/certified/integer_roots",
