@@ -97,7 +97,7 @@ function(cscd_room path)
   if(BUILD_TESTING AND tests)
     add_executable(${room}_test ${tests})
     target_link_libraries(${room}_test PRIVATE ${room} ${test_below} ${GMPXX_LIBRARY} ${GMP_LIBRARY} GTest::gtest_main cscd_flags)
-    # A test often runs once for each time that it is compiled: optimising it further takes longer than it saves.
+    # Tests may compute with the fractions of GMP. A test often runs once for each time that it is compiled: optimising it further takes longer than it saves.
     target_compile_options(${room}_test PRIVATE $<$<CONFIG:Release>:-O1>)
     cscd_compile_together(${room}_test)
     cscd_parse_once(${room}_test brief ${parsed} <gtest/gtest.h>)

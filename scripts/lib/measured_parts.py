@@ -198,8 +198,8 @@ def sweep(results):
 
     count_ms, prepare_ms = sum(query.values()), sum(prepare.values())
     interval_ms = count_ms + verify_ms / SWEEP_VERIFY_EVERY
-    cell = -(-9 * prepare_ms // interval_ms)  # preparing is a tenth of a cell
-    counts = intervals * interval_ms + intervals / cell * prepare_ms
+    shard = -(-9 * prepare_ms // interval_ms)  # preparing is a tenth of a shard
+    counts = intervals * interval_ms + intervals / shard * prepare_ms
     timed = intervals / SWEEP_TIME_EVERY
     # What is timed is verified and counted first.
     timings = timed * (SWEEP_REPETITIONS * count_ms + count_ms + verify_ms) + SWEEP_CHARACTERS * prepare_ms
@@ -207,10 +207,10 @@ def sweep(results):
                   [[f"`{name}`", number(query[name]), number(prepare[name]), days(intervals * query[name])] for name in SWEEP]
                   + [["all", number(count_ms), number(prepare_ms), days(intervals * count_ms)]])
     lines += ["", *table(["sweep", "core-days", "days on 100 cores"], [
-        [f"counts of every interval, each {SWEEP_VERIFY_EVERY}th verified, shards of {cell:.0f} intervals", days(counts),
+        [f"counts of every interval, each {SWEEP_VERIFY_EVERY}th verified, shards of {shard:.0f} intervals", days(counts),
          days(counts / 100)],
         ["of that: queries / verification / preparing", f"{days(intervals * count_ms)} / "
-         f"{days(intervals / SWEEP_VERIFY_EVERY * verify_ms)} / {days(intervals / cell * prepare_ms)}", ""],
+         f"{days(intervals / SWEEP_VERIFY_EVERY * verify_ms)} / {days(intervals / shard * prepare_ms)}", ""],
         [f"times of each {SWEEP_TIME_EVERY}st interval, {SWEEP_REPETITIONS} repetitions, verified, a shard a character",
          days(timings), days(timings / 100)]])]
     return "\n".join(lines + [

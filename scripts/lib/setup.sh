@@ -2,7 +2,7 @@
 # Sourced by the other scripts: what they need from Debian, in one place, and how they build.
 # Each package has its line of reason in scripts/README.md.
 
-packages_build=(g++ cmake ninja-build git libeigen3-dev nlohmann-json3-dev libcli11-dev libvalijson-dev libhdf5-dev
+packages_build=(g++ cmake ninja-build git libeigen3-dev libboost-dev nlohmann-json3-dev libcli11-dev libvalijson-dev libhdf5-dev
                 libgmp-dev libtbb-dev libassimp-dev libtinygltf-dev libmeshoptimizer-dev libdraco-dev zlib1g-dev
                 libpugixml-dev libcgal-dev libssl-dev libgtest-dev python3)
 # The viewer's bundler. Whoever has a Node already keeps it.

@@ -14,14 +14,14 @@ build=$root/build-aarch64
 export CSCD_SYSROOT=${CSCD_SYSROOT:-$root/.cache/aarch64}
 
 echo "Installs g++-aarch64-linux-gnu, qemu-user, mmdebstrap, cmake and ninja-build where they are missing. Unpacks arm64"
-echo "packages of Debian 12 (libc, libstdc++, Eigen, oneTBB, GMP, GoogleTest; 140 MB) into .cache/aarch64, and changes nothing"
+echo "packages of Debian 12 (libc, libstdc++, Eigen, Boost, oneTBB, GMP, GoogleTest; 140 MB) into .cache/aarch64, and changes nothing"
 echo "else of the system. On 2 idle cores it takes about 15 minutes, most of it for compiling."
 say "packages"
 install_packages g++-aarch64-linux-gnu qemu-user mmdebstrap cmake ninja-build
 if [ ! -e "$CSCD_SYSROOT" ]; then
   mkdir -p "$root/.cache"
   mmdebstrap --quiet --variant=extract --architectures=arm64 \
-    --include=libc6-dev,libstdc++-12-dev,libeigen3-dev,libgmp-dev,libtbb-dev,libgtest-dev bookworm "$CSCD_SYSROOT.part"
+    --include=libc6-dev,libstdc++-12-dev,libeigen3-dev,libboost-dev,libgmp-dev,libtbb-dev,libgtest-dev bookworm "$CSCD_SYSROOT.part"
   mv "$CSCD_SYSROOT.part" "$CSCD_SYSROOT"
 fi
 
