@@ -164,7 +164,7 @@ def cost_of_exactness(record):
     return (["## What being exact costs: `filtered_exact` over `newton`", "",
              "Time of all queries over the time of all queries, both asked the same blocks in turn (95 % bootstrap interval over "
              "blocks); and the share of queries that `filtered_exact` answers by its filter, in doubles, those that leave doubles "
-             "for multi-word integers, and those of them that end at the oracle in GMP.", ""] +
+             "for multi-word integers, and those of them that end at the oracle.", ""] +
             table(["queries of", "queries", "time over `newton`", "filter", "doubles", "leave doubles", "reach GMP"], lines) +
             [""])
 
