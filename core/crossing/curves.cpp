@@ -15,6 +15,7 @@ struct SegmentEnd {
   TriangleId face;
   std::int32_t segment;
   std::uint8_t end;
+  bool tied;        // of the pair that has the segment, some side was a tie
   VertexId behind;  // the end of the edge that lies behind the face
 
   // What lies there, as one number: comparing numbers is most of the work of sorting.
@@ -65,6 +66,7 @@ class CurveFinder {
     const auto look = [&](TriangleId with_edges, TriangleId face) {
       const Triangle &corners = mesh_.corners(with_edges), &plane = mesh_.corners(face);
       if (found == 2) return;
+      const std::size_t ties = sides_.degenerate();
       std::array<int, 3> side{};  // 0 for a vertex of the face
       for (std::size_t k = 0; k < 3; ++k)
         if (!contains(plane, corners[k])) side[k] = sides_.side(plane[0], plane[1], plane[2], corners[k]);
@@ -73,7 +75,8 @@ class CurveFinder {
         if (side[k] * side[next] >= 0) continue;
         const EdgeId edge = mesh_.edges_of(with_edges)[k];
         if (!sides_.passes_inside(mesh_.ends(edge), plane)) continue;
-        ends_.push_back({edge, face, number, found++, corners[side[k] > 0 ? k : next]});
+        ends_.push_back(
+            {edge, face, number, found++, sides_.degenerate() > ties, corners[side[k] > 0 ? k : next]});
       }
     };
     look(pair.first, pair.second);
@@ -118,11 +121,11 @@ class CurveFinder {
     first_.clear();
     for (std::size_t i = 0; i < ends_.size();) {
       const auto number = static_cast<std::int32_t>(out_.piercings.size());
-      const auto [edge, face, segment, end, behind] = ends_[i];
+      const auto [edge, face, segment, end, tied, behind] = ends_[i];
       const Edge& both = mesh_.ends(edge);
       const VertexId before = both[behind == both[0] ? 1 : 0];
       out_.piercings.push_back(
-          {edge, face, behind, before, piercing_point(scaled_, both, mesh_.corners(face))});
+          {edge, face, behind, before, piercing_point(scaled_, both, mesh_.corners(face)), tied});
       first_.push_back(i);
       for (const auto key = ends_[i].key(); i < ends_.size() && ends_[i].key() == key; ++i)
         segments_[static_cast<std::size_t>(ends_[i].segment)].piercing[ends_[i].end] = number;

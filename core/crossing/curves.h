@@ -18,6 +18,7 @@ struct Piercing {
   TriangleId face;
   VertexId behind, before;  // the ends of the edge: behind the face, and before it
   Vec3 point;               // rounded
+  bool tied;  // it depends on how ties are broken (GenericSides): it may pass through by nothing measurable
 };
 
 // A curve in which a surface crosses itself. It runs on two *sheets* at once: segment i is where the

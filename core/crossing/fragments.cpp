@@ -171,12 +171,19 @@ void Fragments::join() {
   }
 }
 
+std::span<const Piercing> Fragments::piercings_of(EdgeId edge) const {
+  const std::int32_t first = marks_.pierced[+edge];
+  if (first < 0) return {};
+  const auto from = crossing_.piercings.begin() + first;
+  return {from,
+          std::find_if(from, crossing_.piercings.end(), [&](const Piercing& p) { return p.edge != edge; })};
+}
+
 Fragments::Parting Fragments::parting(EdgeId edge, std::int32_t other) const {
   int balance = 0;  // of faces that have end 0 behind them
-  const std::vector<Piercing>& all = crossing_.piercings;
   const Edge& ends = mesh_.ends(edge);
-  for (std::size_t p = index(marks_.pierced[+edge]); p < all.size() && all[p].edge == edge; ++p)
-    if (mesh_.component(all[p].face) == other) balance += all[p].behind == ends[0] ? 1 : -1;
+  for (const Piercing& p : piercings_of(edge))
+    if (mesh_.component(p.face) == other) balance += p.behind == ends[0] ? 1 : -1;
   if (marks_.is_open[index(other)]) balance %= 2;
   return {std::abs(balance), ends[balance > 0 ? 0 : 1], ends[balance > 0 ? 1 : 0]};
 }

@@ -61,6 +61,8 @@ class Fragments {
 
   const CurveMarks& marks() const { return marks_; }
   bool is_on_curve(VertexId v) const { return marks_.is_on_curve[+v] != 0; }
+  // All piercings of an edge, in no order along it.
+  std::span<const Piercing> piercings_of(EdgeId edge) const;
 
   // How faces of a component part the ends of an edge: not at all if as many have the one end behind them
   // as the other. Faces of an open component may look anywhere; there, an even number of faces does not part.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -11,7 +12,9 @@
 #include "core/base/sort_unique.h"
 #include "core/crossing/reach.h"
 #include "core/crossing/sheet_distance.h"
+#include "core/elementary/exact/static_contact.h"
 #include "core/geometry/unit_scale.h"
+#include "core/mesh/adjacency.h"
 
 namespace cscd {
 namespace {
@@ -20,6 +23,9 @@ constexpr std::int32_t kNone = -1;
 // The largest coordinates of poses that are measured as they are: products of four lengths of a pose, or of
 // its smallest triangles, neither overflow nor vanish.
 constexpr double kSmallestPose = 0x1p-60, kLargestPose = 0x1p60;
+
+// What is nearer to a sheet than this share of the largest coordinate may lie on it, but for rounding.
+constexpr double kOnSheet = 1e-12;
 
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -55,12 +61,18 @@ void scale_back(Overlaps& all, double scale) {
 class PoseOverlaps {
  public:
   PoseOverlaps(OverlapFinder& finder, std::span<const Vec3> exact, std::span<const Vec3> positions,
-               bool each_way)
-      : finder_(finder), mesh_(finder.mesh_), exact_(exact), positions_(positions), each_way_(each_way) {}
+               double largest, bool each_way)
+      : finder_(finder),
+        mesh_(finder.mesh_),
+        exact_(exact),
+        positions_(positions),
+        largest_(largest),
+        each_way_(each_way) {}
 
   Overlaps find(std::span<const CrossingPair> pairs) {
     out_.crossing = find_curves(mesh_, exact_, pairs, positions_);
     if (crossing().curves.empty()) return std::move(out_);
+    if (crossing().degenerate > 0) find_ties(pairs);
     finder_.visited_.resize(mesh_.vertex_count(), 0);
     finder_.listed_.resize(mesh_.triangle_count(), 0);
     parts_.emplace(mesh_, finder_.marks_, crossing(), exact_, positions_);
@@ -89,6 +101,36 @@ class PoseOverlaps {
   const CrossingCurves& crossing() const { return out_.crossing; }
   bool is_on_curve(VertexId v) const { return parts_->is_on_curve(v); }
 
+  // Notes which vertices lie exactly on a triangle. A broken tie puts such a vertex on either side of the
+  // sheet, but it lies in none.
+  void find_ties(std::span<const CrossingPair> pairs) {
+    const auto note = [&](TriangleId of, TriangleId on) {
+      const Triangle& c = mesh_.corners(on);
+      for (const VertexId v : mesh_.corners(of))
+        if (!contains(c, v) &&
+            vertex_touches_triangle(exact_[+v], exact_[+c[0]], exact_[+c[1]], exact_[+c[2]]))
+          on_sheet_.emplace_back(v, mesh_.component(on));
+    };
+    for (const auto& [a, b] : pairs) note(a, b), note(b, a);
+    sort_unique(on_sheet_);
+  }
+  bool lies_on(VertexId v, std::int32_t component) const {
+    return std::ranges::binary_search(on_sheet_, std::pair(v, component));
+  }
+  // How many vertices of a part lie off the other sheet. What a broken tie alone cuts off has none.
+  std::int32_t size_of(std::size_t group, std::int32_t part) {
+    const auto [own, other] = parts_->group(group);
+    const auto is_tie = [&](const auto& at) {
+      return at.second == other && mesh_.component(mesh_.triangles_at(at.first).front()) == own &&
+             parts_->part_of(group, at.first) == part;
+    };
+    const auto [known, is_new] = sizes_.try_emplace({group, part});
+    if (is_new)
+      known->second = parts_->vertex_count(group, part) -
+                      static_cast<std::int32_t>(std::ranges::count_if(on_sheet_, is_tie));
+    return known->second;
+  }
+
   // Chooses the region on one side of each curve, on each of its sheets.
   void choose_regions() {
     region_of_image_.assign(2 * crossing().curves.size(), kNone);
@@ -104,7 +146,7 @@ class PoseOverlaps {
         const std::int32_t behind = parts_->part_of(g, p.behind), before = parts_->part_of(g, p.before);
         if (behind == before) continue;
         const Side side = side_of(group, p);
-        const bool is_smaller = parts_->vertex_count(g, behind) <= parts_->vertex_count(g, before);
+        const bool is_smaller = size_of(g, behind) <= size_of(g, before);
         const bool is_behind = side == Side::behind || (side == Side::smaller && is_smaller);
         const auto image = static_cast<std::int32_t>(2 * c + node.edge_sheet);
         const auto [at, added] = known.try_emplace({g, is_behind ? behind : before}, regions_.size());
@@ -194,13 +236,7 @@ class PoseOverlaps {
     is_open = other == kNone && !has_no_vertex(opposite);
     if (is_open) {
       const std::int32_t component = mesh_.component(sheet_[index(opposite)].front());
-      if (component != mesh_.component(sheet_[index(image)].front())) {
-        SheetDistance& to =
-            to_component_.try_emplace(component, mesh_, positions_, parts_->marks().triangles_of(component))
-                .first->second;
-        to.start_anew();
-        return to;
-      }
+      if (component != mesh_.component(sheet_[index(image)].front())) return to_component(component);
     }
     std::vector<TriangleId> triangles;
     const std::uint32_t list = ++finder_.lists_;
@@ -212,6 +248,14 @@ class PoseOverlaps {
     if (other != kNone && other != own)
       for (const std::int32_t also : regions_[index(other)].region.images) add(also);
     return to_sheet_.emplace(mesh_, positions_, triangles);
+  }
+
+  const SheetDistance& to_component(std::int32_t component) {
+    SheetDistance& to =
+        to_component_.try_emplace(component, mesh_, positions_, parts_->marks().triangles_of(component))
+            .first->second;
+    to.start_anew();
+    return to;
   }
 
   // Takes a point into account.
@@ -234,6 +278,7 @@ class PoseOverlaps {
   void measure(std::size_t r) {
     CrossingRegion& region = regions_[r].region;
     if (each_way_) region.way.assign(region.vertices.size(), Vec3::Zero());
+    double farthest = 0;  // of the region's vertices, ties among them
     for (const std::int32_t image : regions_[r].region.images) {
       bool is_open = false;
       const SheetDistance& to = to_other_sheet(image, static_cast<std::int32_t>(r), is_open);
@@ -243,20 +288,67 @@ class PoseOverlaps {
       for (std::size_t i = region.vertices.size(); i-- > 0;) {
         if (region.image[i] != image) continue;
         const Vec3& x = positions_[+region.vertices[i]];
-        const SheetDistance::Nearest nearest = to.nearest(x, each_way_ ? 0 : region.depth.lower);
+        const bool is_tie = lies_on(region.vertices[i], region.other);
+        const SheetDistance::Nearest nearest = to.nearest(x, each_way_ ? 0
+                                                             : is_tie  ? farthest
+                                                                       : region.depth.lower);
+        farthest = std::max(farthest, nearest.distance);
+        if (is_tie) continue;
         if (each_way_) region.way[i] = way(x, nearest.triangle);
         deepen(region.depth, x, region.vertices[i], nearest);
       }
     }
+    if (region.depth.lower == 0 && !on_sheet_.empty()) measure_tied_edges(r);
     point_out(region.depth);
-    region.depth.upper = region.depth.lower + reach_of(regions_[r].region.images, region.vertices);
+    region.depth.upper = farthest + reach_of(regions_[r].region.images, region.vertices);
     if (region.other_is_open && region.own == region.other) region.depth.lower = 0;
+  }
+
+  // Takes the middle of a part of an edge into account that starts or ends in a tie. It may lie on the other
+  // component, in it, or outside of it.
+  void deepen_tied(CrossingDepth& depth, const Vec3& middle, std::int32_t own, std::int32_t other) {
+    if (own == other || parts_->marks().is_open[index(other)]) return;
+    const SheetDistance::Nearest nearest = to_component(other).nearest(middle, depth.lower);
+    if (nearest.distance > std::max(depth.lower, kOnSheet * largest_) && is_inside(other, middle))
+      deepen(depth, middle, VertexId{-1}, nearest);
+  }
+
+  // Whether a closed component winds around a point that lies off it: the sum of the solid angles of its
+  // triangles, up to rounding (Van Oosterom and Strackee 1983), is a multiple of 4 pi.
+  bool is_inside(std::int32_t component, const Vec3& point) const {
+    double half = 0;  // of the sum
+    for (const TriangleId t : parts_->marks().triangles_of(component)) {
+      const Triangle& c = mesh_.corners(t);
+      const Vec3 a = positions_[+c[0]] - point, b = positions_[+c[1]] - point, d = positions_[+c[2]] - point;
+      const double la = a.norm(), lb = b.norm(), ld = d.norm();
+      half += std::atan2(a.dot(b.cross(d)), la * lb * ld + a.dot(b) * ld + b.dot(d) * la + d.dot(a) * lb);
+    }
+    return std::abs(half) > std::numbers::pi;
+  }
+
+  // Where all vertices of a region lie on the other component, edges between them may lie in it.
+  void measure_tied_edges(std::size_t r) {
+    CrossingRegion& region = regions_[r].region;
+    for (const VertexId v : region.vertices)
+      for (const TriangleId t : mesh_.triangles_at(v))
+        for (const EdgeId edge : mesh_.edges_of(t)) {
+          const Edge& ends = mesh_.ends(edge);
+          if (ends[0] != v && ends[1] != v) continue;
+          const Vec3& x = positions_[+v];
+          Vec3 end = positions_[+(ends[0] == v ? ends[1] : ends[0])];  // of what lies in the region
+          for (const Piercing& p : parts_->piercings_of(edge))
+            if (mesh_.component(p.face) == region.other &&
+                (p.point - x).squaredNorm() < (end - x).squaredNorm())
+              end = p.point;
+          deepen_tied(region.depth, (x + end) / 2, region.own, region.other);
+        }
   }
 
   // The depth of what a curve cuts off one sheet without a vertex: edges go in and come out again.
   CrossingDepth depth_of_edges(std::int32_t image) {
     CrossingDepth depth;
     bool is_open = false;
+    double farthest = 0;
     const SheetDistance* to = nullptr;
     for (const CrossingCurve::Node& node : crossing().curves[index(image / 2)].nodes) {
       if (node.piercing < 0 || node.edge_sheet != image % 2) continue;
@@ -265,9 +357,7 @@ class PoseOverlaps {
       if (from.behind != ends[1]) continue;  // the edge goes in at `from`, seen from its first end
       const Vec3 way = positions_[+ends[1]] - positions_[+ends[0]];
       const Piercing* out = nullptr;
-      for (auto p = index(parts_->marks().pierced[+from.edge]);
-           p < crossing().piercings.size() && crossing().piercings[p].edge == from.edge; ++p) {
-        const Piercing& at = crossing().piercings[p];
+      for (const Piercing& at : parts_->piercings_of(from.edge)) {
         if (mesh_.component(at.face) != mesh_.component(from.face) || way.dot(at.point - from.point) <= 0)
           continue;
         if (out == nullptr || way.dot(at.point - out->point) < 0) out = &at;
@@ -275,10 +365,16 @@ class PoseOverlaps {
       if (out == nullptr || out->behind != ends[0]) continue;
       if (to == nullptr) to = &to_other_sheet(image, kNone, is_open);
       const Vec3 middle = (from.point + out->point) / 2;
-      deepen(depth, middle, VertexId{-1}, to->nearest(middle, depth.lower));
+      const SheetDistance::Nearest nearest = to->nearest(middle, depth.lower);
+      farthest = std::max(farthest, nearest.distance);
+      if (from.tied || out->tied)
+        deepen_tied(depth, middle, mesh_.component(mesh_.triangles_at(from.edge).front()),
+                    mesh_.component(from.face));
+      else
+        deepen(depth, middle, VertexId{-1}, nearest);
     }
     point_out(depth);
-    depth.upper = depth.lower + reach_of(std::span(&image, 1), {});
+    depth.upper = farthest + reach_of(std::span(&image, 1), {});
     if (is_open) depth = {.upper = depth.upper};
     return depth;
   }
@@ -325,13 +421,16 @@ class PoseOverlaps {
   OverlapFinder& finder_;
   const TriangleMesh& mesh_;
   std::span<const Vec3> exact_, positions_;
+  double largest_;  // of the coordinates of `positions_`
   bool each_way_;
   Overlaps out_;
   std::optional<Fragments> parts_;
   std::vector<Found> regions_;
-  std::vector<std::int32_t> region_of_image_;           // [images], or kNone
-  std::vector<std::vector<TriangleId>> sheet_;          // [images]
-  std::map<std::int32_t, SheetDistance> to_component_;  // of components that are not closed
+  std::vector<std::int32_t> region_of_image_;   // [images], or kNone
+  std::vector<std::vector<TriangleId>> sheet_;  // [images]
+  std::map<std::int32_t, SheetDistance> to_component_;
+  std::vector<std::pair<VertexId, std::int32_t>> on_sheet_;  // with the component of that sheet; sorted
+  std::map<std::pair<std::size_t, std::int32_t>, std::int32_t> sizes_;  // of parts of groups
   std::optional<SheetDistance> to_sheet_;
 };
 
@@ -341,11 +440,11 @@ Overlaps OverlapFinder::find(std::span<const Vec3> positions, std::span<const Cr
   double largest = 0;
   for (const Vec3& x : positions) largest = std::max(largest, x.cwiseAbs().maxCoeff());
   if (largest >= kSmallestPose && largest <= kLargestPose)
-    return PoseOverlaps(*this, positions, positions, each_way).find(pairs);
+    return PoseOverlaps(*this, positions, positions, largest, each_way).find(pairs);
   const double scale = unit_scale(largest);
   std::vector<Vec3> scaled(positions.begin(), positions.end());
   for (Vec3& x : scaled) x *= scale;
-  Overlaps found = PoseOverlaps(*this, positions, scaled, each_way).find(pairs);
+  Overlaps found = PoseOverlaps(*this, positions, scaled, largest * scale, each_way).find(pairs);
   scale_back(found, scale);
   return found;
 }

@@ -1,6 +1,7 @@
 #include "core/crossing/overlaps.h"
 
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include "core/crossing/test_overlaps.h"
 #include "core/elementary/exact/static_contact.h"
 #include "core/geometry/feature_distance.h"
+#include "core/geometry/nearest_points.h"
 #include "core/mesh/test_shapes.h"
 
 // Random closed surfaces, judged by the definitions: all pairs of triangles, and parities along rays.
@@ -320,9 +322,20 @@ TEST(Overlaps, HaveBoundsThatHoldWhereLengthsAreSubnormal) {
   EXPECT_GT(deep, 50);
 }
 
-// On a coarse grid, vertices lie in faces, edges meet, and triangles lie in one plane.
+double distance_to(const TriangleMesh& mesh, std::span<const Vec3> x, std::int32_t component, const Vec3& p) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const Triangle& c = mesh.triangles()[t];
+    if (mesh.component(triangle(t)) == component)
+      least = std::min(least, nearest_of_vertex_face({p, x[+c[0]], x[+c[1]], x[+c[2]]}).way.norm());
+  }
+  return least;
+}
+
+// On a coarse grid, vertices lie in faces, edges meet, and triangles lie in one plane. What lies on the other
+// sheet is not deep in it, whatever side of it the tie is broken to.
 TEST(Overlaps, HaveWholeCurvesWhereSurfacesTouchExactly) {
-  std::size_t degenerate = 0, touching = 0;
+  std::size_t degenerate = 0, touching = 0, deep = 0;
   for (int n = 0; n < count() / 5; ++n) {
     SCOPED_TRACE(n);
     Pushed pushed(static_cast<unsigned>(n));
@@ -334,10 +347,85 @@ TEST(Overlaps, HaveWholeCurvesWhereSurfacesTouchExactly) {
     expect_curves_right(mesh, found.crossing, pairs);
     degenerate += found.crossing.degenerate;
     touching += found.crossing.touching;
+    for (const Overlap& overlap : found.overlaps)
+      for (const CrossingRegion& region : overlap.regions) {
+        if (region.own == region.other || region.depth.lower == 0) continue;
+        ++deep;
+        EXPECT_GT(distance_to(mesh, pushed.shapes.positions, region.other, region.depth.point), 1e-9);
+      }
     if (HasFailure()) return;
   }
   EXPECT_GT(degenerate, 100U);
   EXPECT_GT(touching, 100U);
+  EXPECT_GT(deep, 100U);
+}
+
+// A tetrahedron with an edge in a sheet has two vertices on it and two off it. The tie may be broken so that
+// the sheet parts them; but the edge alone is beyond it.
+TEST(Overlaps, OfAnEdgeThatRestsOnASheetHaveNoDepth) {
+  std::mt19937 random(3);
+  const auto draw = [&](int low, int high) { return std::uniform_int_distribution(low, high)(random) / 8.0; };
+  std::size_t curves = 0;
+  for (int n = 0; n < count(); ++n) {
+    SCOPED_TRACE(n);
+    const double up = n % 2 == 0 ? 1 : -1;
+    test::Shape tetrahedron{
+        {{draw(2, 30), draw(2, 30), 0},
+         {draw(2, 30), draw(2, 30), 0},
+         {draw(2, 30), draw(2, 30), up * draw(1, 12)},
+         {draw(2, 30), draw(2, 30), up * draw(1, 12)}},
+        {test::corners(0, 1, 2), test::corners(0, 3, 1), test::corners(0, 2, 3), test::corners(1, 3, 2)}};
+    const std::vector<Vec3>& x = tetrahedron.positions;
+    if (std::abs((x[1] - x[0]).dot((x[2] - x[0]).cross(x[3] - x[0]))) < 1e-6) continue;
+    const test::Shape both = test::together(test::moved(test::sheet(4), {2, 2, 0}, 2), tetrahedron);
+    const TriangleMesh mesh = both.mesh();
+    OverlapFinder finder(mesh);
+    const Overlaps found = finder.find(both.positions, all_pairs(mesh, both.positions));
+    for (const Overlap& overlap : found.overlaps) EXPECT_LT(overlap.depth.lower, 1e-12);
+    curves += found.crossing.curves.size();
+  }
+  EXPECT_GT(curves, 100U);
+}
+
+// An octahedron whose middle lies on an edge of a box: all its corners lie on the box or outside, but edges
+// between them lead through the box.
+TEST(Overlaps, OfEdgesBetweenCornersThatLieOnTheOtherSheetHaveADepth) {
+  const test::Shape both =
+      test::together(test::box({0, 0, 0}, {2, 2, 2}), test::moved(test::octahedron(), {1, 2, 0}));
+  const TriangleMesh mesh = both.mesh();
+  OverlapFinder finder(mesh);
+  const Overlaps found = finder.find(both.positions, all_pairs(mesh, both.positions));
+  double deepest = 0;
+  for (const Overlap& overlap : found.overlaps) deepest = std::max(deepest, overlap.depth.lower);
+  EXPECT_GE(deepest, 0.5 - 1e-12);
+  EXPECT_LE(deepest, 0.6);
+}
+
+// Walls of equal boxes lie in one plane when one box is shifted along an axis. No point of what the boxes
+// share is deeper than that is thick.
+TEST(Overlaps, OfShiftedBoxesAreNoDeeperThanWhatTheyShareIsThick) {
+  std::mt19937 random(5);
+  const auto draw = [&](int low, int high) {
+    return static_cast<double>(std::uniform_int_distribution(low, high)(random));
+  };
+  std::size_t crossing = 0;
+  for (int n = 0; n < count(); ++n) {
+    SCOPED_TRACE(n);
+    const Vec3 size(draw(1, 12), draw(1, 12), draw(1, 12));
+    const auto axis = static_cast<Eigen::Index>(n % 3);
+    const Vec3 shift = draw(-12, 12) * Vec3::Unit(axis);
+    const test::Shape box = test::box({0, 0, 0}, size);
+    const test::Shape both = test::together(box, test::moved(box, shift));
+    const TriangleMesh mesh = both.mesh();
+    OverlapFinder finder(mesh);
+    const Overlaps found = finder.find(both.positions, all_pairs(mesh, both.positions));
+    for (const Overlap& overlap : found.overlaps) {
+      ++crossing;
+      EXPECT_LE(overlap.depth.lower, std::max(1e-12, size[axis] - std::abs(shift[axis])));
+      EXPECT_GE(overlap.depth.upper, overlap.depth.lower);
+    }
+  }
+  EXPECT_GT(crossing, 100U);
 }
 
 }  // namespace
