@@ -257,7 +257,7 @@ Sentences sentences(const ClipAnswer& answer) {
   if (!s.met.empty()) out.met = "met: " + listed(s.met, met_text);
   if (input.ignored) out.ignored = ignored_text(input, s);
   // A simulation that starts crossed has no pose at rest, and what it begins with may be what is looked
-  // for.
+  // for. One pose alone is told by the verdict.
   const std::string at = input.clip->header().rest.empty()
                              ? "at rest (the first frame, as the input names no pose at rest): "
                              : "at rest: ";
@@ -266,9 +266,9 @@ Sentences sentences(const ClipAnswer& answer) {
     const std::string counted = answer.rest_left_out ? "; left out of " + many(s.with_left_out, "interval") +
                                                            ", with " + many(s.left_out_contacts, "contact") +
                                                            " (--keep-rest-crossings counts both)"
-                                : input.is_one_pose ? "; counted"
+                                : input.is_one_pose ? ""
                                                     : "; counted, as asked";
-    if (!rest.crossing.empty())
+    if (!rest.crossing.empty() && !input.is_one_pose)
       out.rest = "crosses " + at +
                  listed(rest.crossing,
                         [](const NamePair& both, std::size_t count) {
@@ -285,7 +285,7 @@ Sentences sentences(const ClipAnswer& answer) {
                               }) +
                        (out.rest.empty() || !answer.rest_left_out ? counted : "; left out with those");
   }
-  if (answer.rest_touching.total > 0)
+  if (answer.rest_touching.total > 0 && !input.is_one_pose)
     out.touching = "only touches " + at +
                    listed(pairs_by_part(answer.names, input.mesh, answer.rest_touching),
                           [](const NamePair& both, std::size_t count) {
@@ -339,10 +339,12 @@ bool is_known(const CrossingDepth& depth) {
 
 std::string event_text(const Input& input, const OverlapEvent& event) {
   std::string out = event.names.first + (event.crosses ? " in " : " touches ") +
-                    (event.names.first == event.names.second ? "itself" : event.names.second) + ": ";
+                    (event.names.first == event.names.second ? "itself" : event.names.second);
   const std::string most = "at most " + distance_text(input, event.depth.upper);
-  out += is_known(event.depth) ? distance_text(input, event.depth.lower) + " deep (" + most + ")"
-                               : most + " deep, depth not known";
+  if (is_known(event.depth))
+    out += ": " + distance_text(input, event.depth.lower) + " deep (" + most + ")";
+  else if (event.crosses)
+    out += ": " + most + " deep, depth not known";
   if (event.at_rest) out += ", deeper than at rest (" + distance_text(input, *event.at_rest) + ")";
   if (event.vertices > 0) out += ", " + many(event.vertices, "vertex");
   const auto frame = [&](std::size_t interval) { return frame_text(frame_of(input, {interval, 0})); };

@@ -60,8 +60,8 @@ void Session::find_rest_crossings(const std::string& name, std::span<const Vec3>
   const Stopwatch searching;
   if (!options_.ignore_starts) find_crossings(rest, nullptr);
   rest_.crossing = starts_.crossings();
+  if (rest_.crossing.all_kept()) rest_ = tell_meetings_apart(setup_.mesh, rest, rest_.crossing);
   if (!options_.keep_rest_crossings) {
-    if (rest_.crossing.all_kept()) rest_ = tell_meetings_apart(setup_.mesh, rest, rest_.crossing);
     if (rest_.crossing.total > kMostLeftOut)
       throw InputError(
           name + ": " + std::to_string(rest_.crossing.total) +
