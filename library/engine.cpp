@@ -96,6 +96,7 @@ SelfCollision::Engine::Engine(const Faces& faces, const Positions& reference, Op
   exclusions_ = exclusions_of(obstacles_ ? obstacles_->together() : mesh_, all, options_.exclude);
   if (obstacles_ && !exclusions_.empty()) obstacles_->leave_out(exclusions_);
   if (obstacles_) obstacles_->thicken(thickness_);
+  near_.emplace(mesh_, reference_, thickness_);
   // Preparing here, and not in the first step, finds what is wrong with the input where it is given.
   plain(first_);
 }
@@ -318,6 +319,7 @@ Session& SelfCollision::Engine::made(std::optional<Session>& wanted, bool first,
                                .keep_rest_crossings = true,
                                .ignore_starts = !options_.check_start,
                                .check_finite = options_.check_positions,
+                               .near = near_ ? &*near_ : nullptr,
                                .thickness = thickness_};
   return wanted.emplace("reference positions", setup(first, exclusions), strategy, kDrvbcFastComplete,
                         reference_, options);

@@ -13,6 +13,7 @@
 #include "core/detect/strategy.h"
 #include "core/mesh/triangle_mesh.h"
 #include "core/session/candidates.h"
+#include "core/session/near_pairs.h"
 #include "core/session/obstacles.h"
 #include "core/session/session.h"
 #include "core/session/vertex_bounds.h"
@@ -97,6 +98,7 @@ class SelfCollision::Engine {
   std::optional<Obstacles> obstacles_;
   Thickness thickness_;          // of vertices of the mesh, and behind them of obstacles
   cscd::Exclusions exclusions_;  // vertices and faces of obstacles are numbered behind the mesh's
+  std::optional<NearPairs> near_;
   Question first_{.first = true}, all_{.first = false};
   std::optional<CandidateSearch> search_;
   StepAnswer answer_;        // about the mesh alone

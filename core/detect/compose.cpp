@@ -456,6 +456,14 @@ class ComposedDetector : public Detector {
     if (step.crossings) std::ranges::sort(step.crossings->pairs);
     return report;
   }
+  bool pass_on(const Step& step, TrianglePairSink& sink) override {
+    if (!culler_->knows_distance(step.thickness)) return false;
+    culler_->refit(step);
+    culler_->classify(step);
+    culler_->cull(sink);
+    sink.flush();
+    return true;
+  }
   void forget() override { culler_->forget(), tester_.forget(); }
   std::vector<std::byte> saved_preparation() const override { return culler_->saved_preparation(); }
   RadialView radial_view() const override { return culler_->radial_view(); }

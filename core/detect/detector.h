@@ -28,6 +28,8 @@ struct Report {
   double start_ms = 0;  // what the exact test of pairs that may cross at the start took; outside of `ms`
 };
 
+class TrianglePairSink;
+
 // Finds the contacts of one interval after another. The kind of a detector's strategy (StrategyKind) says
 // whether the detector allocates memory once it has seen its largest interval. A package may, and so may a
 // strategy that cuts clusters anew.
@@ -39,6 +41,9 @@ class Detector {
   // thickness of the step, and where a package that it calls fails or refuses the positions
   // (baselines/embree, baselines/fcl); and MemoryShortage before the contacts take more memory than there is.
   virtual Report detect(const Step& step, ContactSet& out) = 0;
+  // Passes on every triangle pair that is not proven apart in the interval, and tests none. Returns false
+  // where the detector has no culler of its own that knows the thickness of the step.
+  virtual bool pass_on(const Step& /*step*/, TrianglePairSink& /*sink*/) { return false; }
   // Forgets all intervals: what follows is answered as by a new detector. Only the detectors of strategies
   // that follow the surface (StrategyKind::adaptive) have anything to forget.
   virtual void forget() {}

@@ -127,6 +127,23 @@ Session::PreparedStrategy& Session::choose(const Motion& motion, const Rig::Inte
   return needs_start() && !starts_.clear() ? fallback() : main_;
 }
 
+// Whether what is near (NearPairs) answers a step.
+bool Session::is_near(const Motion& motion) {
+  if (options_.near == nullptr || !start_known_) return false;
+  const auto complete = [&]() -> Detector& {
+    return *(main_.strategy->guarantee == Guarantee::complete ? main_ : fallback()).detector;
+  };
+  if (!options_.near->covers(motion) &&
+      !(options_.near->is_worth_anchoring(motion) && options_.near->anchor(motion, complete())))
+    return false;
+  if (!near_) {
+    StrategyInput setup = setup_;
+    setup.first_only = first_only();
+    near_ = {&fallback_strategy_, make_near_detector(*options_.near, setup), setup.threads};
+  }
+  return true;
+}
+
 bool Session::signs_pay() const {
   return main_.strategy->drops_by_signs && setup_.mesh.closed_and_oriented();
 }
@@ -182,6 +199,7 @@ void Session::ask(PreparedStrategy& asked, const Motion& motion, const Rig::Inte
     start_known_ = true;
     out.embedding_ms += out.report.start_ms;
   }
+  if (options_.near != nullptr && !(near_ && &asked == &*near_)) options_.near->note_work(out.report.cull);
   touched_last_ = !out.found.contacts.empty();
   say_start(out);
   if (!options_.ignore_starts) {
@@ -241,7 +259,8 @@ void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer&
   const Stopwatch whole;
   begin(motion);
   try {
-    PreparedStrategy& chosen = choose(motion, bones);
+    PreparedStrategy& otherwise = choose(motion, bones);
+    PreparedStrategy& chosen = is_near(motion) ? *near_ : otherwise;
     out.embedding_ms = whole.milliseconds();
     ask(chosen, motion, bones, out);
     // A strategy that promises the first contact may miss those after it. If that first one is left out as a

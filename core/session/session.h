@@ -12,6 +12,7 @@
 #include "core/detect/start/rest_crossings.h"
 #include "core/detect/strategy.h"
 #include "core/session/known_starts.h"
+#include "core/session/near_pairs.h"
 
 namespace cscd {
 
@@ -53,6 +54,9 @@ struct SessionOptions {
   bool ignore_starts = false;
   // Throws InputError for positions that are not finite, before anything is changed.
   bool check_finite = false;
+  // Answers small steps from what is near; null to ask the strategies about every step. Several sessions of
+  // one surface and thickness may share it. Must outlive the session.
+  NearPairs* near = nullptr;
   // How near features may come before they count as contacts. Above 0, both strategies and the elementary
   // test have to know distances. What it refers to must outlive the session.
   Thickness thickness = {};
@@ -93,8 +97,7 @@ class Session {
   // How many triangles the preparation of the set-up did not know.
   std::size_t new_triangles() const { return main_.new_triangles; }
   // The triangles that cross at rest, which are left out of answers until they part, with those that
-  // touch beside them; and those that only touch at rest, which are not left out. Where the options keep
-  // everything, all that meet at rest count as crossing.
+  // touch beside them; and those that only touch at rest, which are not left out.
   const Crossings& rest_crossings() const { return rest_.crossing; }
   const Crossings& rest_touching() const { return rest_.touching; }
   int threads() const { return main_.threads; }
@@ -124,6 +127,7 @@ class Session {
   bool needs_start() const { return needs_embedded_start(main_.strategy->guarantee) && !options_.unproven; }
   void begin(const Motion& motion);
   PreparedStrategy& choose(const Motion& motion, const Rig::Interval* bones);
+  bool is_near(const Motion& motion);
   bool fallback_pays() const;
   // Whether a way from an embedded pose and a step from its end take less time than the main strategy takes
   // to see the start.
@@ -139,7 +143,7 @@ class Session {
   const Strategy& fallback_strategy_;
   SessionOptions options_;
   PreparedStrategy main_;
-  std::optional<PreparedStrategy> fallback_;
+  std::optional<PreparedStrategy> fallback_, near_;
   double preparation_ms_ = 0;  // of the strategy
   KnownStarts starts_;
   double rest_ms_ = 0;  // that the search of the pose at rest took

@@ -1,0 +1,167 @@
+#include "core/session/near_pairs.h"
+
+#include <cstdlib>
+#include <gtest/gtest.h>
+#include <random>
+
+#include "core/detect/compose.h"
+#include "core/detect/plain_culler.h"
+#include "core/elementary/catalogue.h"
+#include "core/fast/drvbc_fast.h"
+#include "core/mesh/test_shapes.h"
+#include "core/session/session.h"
+
+namespace cscd {
+namespace {
+
+// How many steps each series has; more by CSCD_RANDOM_STEPS=10000.
+int count() {
+  const char* asked = std::getenv("CSCD_RANDOM_STEPS");
+  return asked != nullptr ? std::atoi(asked) : 400;
+}
+
+// Two balls and an open sheet near each other, which move by small steps, each vertex a little otherwise.
+class NearPairsTest : public testing::Test {
+ protected:
+  NearPairsTest() {
+    shape_ =
+        test::together(test::together(test::icosphere(2), test::moved(test::icosphere(2), {2.005, 0, 0})),
+                       test::moved(test::sheet(6), {0, 0, 1.005}));
+    mesh_.emplace(shape_.mesh());
+  }
+  Vec3 draw() { return Vec3(some_(random_), some_(random_), some_(random_)); }
+  // Each piece moves on in a direction of its own, which changes now and then, and each vertex a little
+  // besides.
+  std::vector<Vec3> next(std::span<const Vec3> from, double step, bool turn) {
+    std::vector<Vec3> out(from.begin(), from.end());
+    for (Vec3& way : ways_)
+      if (turn) way = draw();
+    for (std::size_t v = 0; v < out.size(); ++v)
+      out[v] += step * (ways_[std::min<std::size_t>(v / 162, 2)] + 0.3 * draw());
+    return out;
+  }
+  StrategyInput setup(bool first) const {
+    return {.mesh = *mesh_,
+            .reference = shape_.positions,
+            .rig = nullptr,
+            .elementary = *find_elementary_test("filtered_exact"),
+            .first_only = first};
+  }
+  Session session(bool first, NearPairs* near, const Thickness& thickness) const {
+    return {"test",
+            setup(first),
+            kDrvbcFastComplete,
+            kDrvbcFastComplete,
+            shape_.positions,
+            {.first = first, .keep_rest_crossings = true, .near = near, .thickness = thickness}};
+  }
+
+  std::mt19937 random_{7};
+  std::uniform_real_distribution<double> some_{-1, 1};
+  test::Shape shape_;
+  std::optional<TriangleMesh> mesh_;
+  std::array<Vec3, 3> ways_;
+};
+
+std::vector<std::tuple<FeaturePair, double>> told(const ContactSet& found) {
+  std::vector<std::tuple<FeaturePair, double>> out;
+  for (const Contact& contact : found.contacts) out.emplace_back(contact.pair, contact.time);
+  return out;
+}
+
+// Steps that follow each other, trial steps from one start, steps back and leaps: the answers are those of a
+// session without a list.
+TEST_F(NearPairsTest, AnswerAsTheStrategiesDo) {
+  std::vector<double> of_vertex(mesh_->vertex_count());
+  for (double& r : of_vertex) r = 0.004 * std::abs(some_(random_));
+  for (const Thickness& thickness : {Thickness(), Thickness(0.01), Thickness(0.001, of_vertex)})
+    for (const bool first : {false, true}) {
+      NearPairs near(*mesh_, shape_.positions, thickness);
+      Session with = session(first, &near, thickness), without = session(first, nullptr, thickness);
+      std::vector<Vec3> start = shape_.positions, end;
+      std::size_t touching = 0, steps = 0;
+      StepAnswer a, b;
+      for (int n = 0; n < count(); ++n) {
+        SCOPED_TRACE(testing::Message() << n << " thickness " << thickness.largest() << " first " << first);
+        const double size = n % 50 == 49 ? 0.3 : n % 7 == 0 ? 1e-2 : 5e-3;
+        end = next(start, size, n % 25 == 0);
+        with.step({start, end}, nullptr, a);
+        without.step({start, end}, nullptr, b);
+        ASSERT_EQ(told(a.found), told(b.found));
+        ASSERT_EQ(a.start.pairs, b.start.pairs);
+        ASSERT_EQ(a.proven, b.proven);
+        touching += !a.found.contacts.empty();
+        ++steps;
+        if (n % 5 == 3) std::swap(start, end);  // asks about the way back, and goes on from the same start
+        if (n % 5 != 4) start = end;
+        if (n % 50 == 49) start = shape_.positions;
+      }
+      EXPECT_GT(touching, steps / 20);
+      EXPECT_GT(near.anchors(), 2u);
+      EXPECT_LT(near.anchors(), steps / 4);
+    }
+}
+
+// Sheets that lie so densely that a list cannot hold all that is near: every other one moves towards its
+// neighbour below, half of them from twice as far. Those are given up, and are farther than the list reaches.
+TEST_F(NearPairsTest, ReachLessFarWhereMuchIsNear) {
+  constexpr std::size_t kSheets = 12, kVertices = 49;
+  shape_ = {};
+  for (std::size_t k = 0; k < kSheets; ++k) {
+    const double lower = static_cast<double>(k / 2), gap = k % 4 == 1 ? 0.004 : 0.008;
+    const test::Shape sheet =
+        test::moved(test::sheet(6), {0.01 * draw().x(), 0, 0.1 * lower + (k % 2 == 1 ? gap : 0)});
+    shape_ = k == 0 ? sheet : test::together(shape_, sheet);
+  }
+  mesh_.emplace(shape_.mesh());
+  NearPairs near(*mesh_, shape_.positions, {});
+  Session with = session(false, &near, {}), without = session(false, nullptr, {});
+  std::vector<Vec3> start = shape_.positions;
+  std::size_t touching = 0;
+  StepAnswer a, b;
+  for (int n = 0; n < count(); ++n) {
+    SCOPED_TRACE(n);
+    if (n % 40 == 0) start = shape_.positions;
+    std::vector<Vec3> end = start;
+    for (std::size_t v = 0; v < end.size(); ++v)
+      end[v].z() += (v / kVertices % 2 == 0 ? 1 : -1) * 3e-4 * (1 + 0.1 * draw().x());
+    with.step({start, end}, nullptr, a);
+    without.step({start, end}, nullptr, b);
+    ASSERT_EQ(told(a.found), told(b.found));
+    touching += !a.found.contacts.empty();
+    start = std::move(end);
+  }
+  EXPECT_GT(touching, 10u);
+  EXPECT_GT(near.anchors(), 0u);
+}
+
+// The bound is spent to the last digit: a vertex that moves from just beyond the reach of a list touches.
+TEST_F(NearPairsTest, HoldWhatComesFromTheEndOfTheirReach) {
+  const std::vector<Triangle> faces{test::corners(0, 1, 2), test::corners(3, 4, 5)};
+  const TriangleMesh mesh(faces, 6, "two triangles");
+  for (int n = 0; n < count() / 2; ++n) {
+    SCOPED_TRACE(n);
+    // The first triangle rises by small steps until it meets the second, which comes down as fast.
+    const double gap = 0.02 + 0.3 * std::abs(some_(random_)), step = 0.01 * (0.2 + std::abs(some_(random_)));
+    std::vector<Vec3> start{{0, 0, 0},       {1, 0, 0},       {0, 1, 0},
+                            {0.2, 0.2, gap}, {1.2, 0.2, gap}, {0.2, 1.2, gap}};
+    const StrategyInput setup{mesh, start, nullptr, *find_elementary_test("filtered_exact")};
+    NearPairs near(mesh, start, {});
+    Session session("test", setup, kDrvbcFastComplete, kDrvbcFastComplete, start,
+                    {.keep_rest_crossings = true, .near = &near});
+    StepAnswer answer;
+    for (double moved = 0;; moved += step) {
+      std::vector<Vec3> end = start;
+      for (std::size_t v = 0; v < 6; ++v) end[v].z() += v < 3 ? step / 2 : -step / 2;
+      session.step({start, end}, nullptr, answer);
+      const double before = start[3].z() - start[0].z(), after = end[3].z() - end[0].z();
+      ASSERT_EQ(!answer.found.contacts.empty(), before >= 0 && after <= 0) << before << " to " << after;
+      if (after < 0) break;
+      start = std::move(end);
+    }
+    EXPECT_GT(near.anchors(), 0u);
+  }
+}
+
+}  // namespace
+}  // namespace cscd
