@@ -119,9 +119,10 @@ class PoseOverlaps {
   }
   // How many vertices of a part lie off the other sheet. What a broken tie alone cuts off has none.
   std::int32_t size_of(std::size_t group, std::int32_t part) {
-    const auto [own, other] = parts_->group(group);
+    const Fragments::Group& sheets = parts_->group(group);
     const auto is_tie = [&](const auto& at) {
-      return at.second == other && mesh_.component(mesh_.triangles_at(at.first).front()) == own &&
+      return at.second == sheets.other &&
+             mesh_.component(mesh_.triangles_at(at.first).front()) == sheets.own &&
              parts_->part_of(group, at.first) == part;
     };
     const auto [known, is_new] = sizes_.try_emplace({group, part});
