@@ -150,7 +150,7 @@ TEST_F(NearPairsTest, HoldWhatComesFromTheEndOfTheirReach) {
     Session session("test", setup, kDrvbcFastComplete, kDrvbcFastComplete, start,
                     {.keep_rest_crossings = true, .near = &near});
     StepAnswer answer;
-    for (double moved = 0;; moved += step) {
+    for (;;) {
       std::vector<Vec3> end = start;
       for (std::size_t v = 0; v < 6; ++v) end[v].z() += v < 3 ? step / 2 : -step / 2;
       session.step({start, end}, nullptr, answer);
