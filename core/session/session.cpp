@@ -12,6 +12,8 @@ namespace {
 constexpr std::size_t kMostLeftOut = 500'000;
 // Preparing the fallback takes about as long as this many plain searches for crossings, or twice as many.
 constexpr std::size_t kPlainSearches = 16;
+// And about as long as this many small steps of the strategy that promises the first contact.
+constexpr int kSmallSteps = 256;
 
 // Whether something touches, or is close, at t = 0 already, or may be.
 bool has_contact_at_start(const ContactSet& found) {
@@ -127,15 +129,17 @@ Session::PreparedStrategy& Session::choose(const Motion& motion, const Rig::Inte
   return needs_start() && !starts_.clear() ? fallback() : main_;
 }
 
-// Whether what is near (NearPairs) answers a step.
+// Whether what is near (NearPairs) answers a step. A complete strategy finds what is near; where another one
+// answers, the fallback is prepared for that only after so many small steps that they have taken about as
+// long.
 bool Session::is_near(const Motion& motion) {
   if (options_.near == nullptr || !start_known_) return false;
-  const auto complete = [&]() -> Detector& {
-    return *(main_.strategy->guarantee == Guarantee::complete ? main_ : fallback()).detector;
-  };
-  if (!options_.near->covers(motion) &&
-      !(options_.near->is_worth_anchoring(motion) && options_.near->anchor(motion, complete())))
-    return false;
+  if (!options_.near->covers(motion)) {
+    const bool is_complete = main_.strategy->guarantee == Guarantee::complete;
+    if (!options_.near->is_worth_anchoring(motion)) return false;
+    if (!is_complete && !fallback_ && ++small_steps_ < kSmallSteps) return false;
+    if (!options_.near->anchor(motion, *(is_complete ? main_ : fallback()).detector)) return false;
+  }
   if (!near_) {
     StrategyInput setup = setup_;
     setup.first_only = first_only();

@@ -149,6 +149,7 @@ class Session {
   double rest_ms_ = 0;  // that the search of the pose at rest took
   Meetings rest_;
   RestCrossings left_out_;
+  int small_steps_ = 0;        // before the fallback finds what is near
   bool touched_last_ = false;  // something did in the step before
   Sought sought_ = Sought::contacts;
   bool start_known_ = false;  // what crosses at the start of the step that is being answered is known
