@@ -80,7 +80,7 @@ TEST_F(NearPairsTest, AnswerAsTheStrategiesDo) {
       Session with = session(first, &near, thickness), without = session(first, nullptr, thickness);
       std::vector<Vec3> start = shape_.positions, end;
       std::size_t touching = 0, steps = 0;
-      StepAnswer a, b;
+      StepAnswer a, b, c;
       for (int n = 0; n < count(); ++n) {
         SCOPED_TRACE(testing::Message() << n << " thickness " << thickness.largest() << " first " << first);
         const double size = n % 50 == 49 ? 0.3 : n % 7 == 0 ? 1e-2 : 5e-3;
@@ -88,6 +88,15 @@ TEST_F(NearPairsTest, AnswerAsTheStrategiesDo) {
         with.step({start, end}, nullptr, a);
         without.step({start, end}, nullptr, b);
         ASSERT_EQ(told(a.found), told(b.found));
+        if (first) {
+          with.step({start, end}, nullptr, c, Session::Sought::any_contact);
+          ASSERT_EQ(c.found.contacts.empty(), b.found.contacts.empty());
+          with.step({start, end}, nullptr, c, Session::Sought::time);
+          ASSERT_EQ(c.time().has_value(), b.time().has_value());
+          if (b.time()) {
+            ASSERT_NEAR(*c.time(), *b.time(), 0x1p-42);
+          }
+        }
         ASSERT_EQ(a.start.pairs, b.start.pairs);
         ASSERT_EQ(a.proven, b.proven);
         touching += !a.found.contacts.empty();
