@@ -5,7 +5,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "core/base/vec3.h"
@@ -28,7 +27,7 @@ namespace cscd {
 // One thread asks at a time. Errors of the input are InputError.
 class SelfCollision::Engine {
  public:
-  std::atomic<std::thread::id> asked_by;  // the thread whose call is being answered; none: the default id
+  std::atomic<const void*> asked_by = nullptr;  // the thread whose call is being answered (this_thread())
 
   Engine(const Faces& faces, const Positions& reference, Options options);
 

@@ -2,7 +2,6 @@
 #include <atomic>
 #include <optional>
 #include <stdexcept>
-#include <thread>
 
 #include "core/base/error.h"
 #include "core/base/instruction_set.h"
@@ -25,13 +24,19 @@ auto checked(const Call& call) {
   }
 }
 
+// Returns what differs from thread to thread. Standard libraries without threads have no std::thread::id.
+const void* this_thread() {
+  thread_local const char here = 0;
+  return &here;
+}
+
 // Holds an object for one call, and throws where another call holds it: that of another thread, or the call
 // of this thread that is asking a function of the caller for positions or for a bound.
 class Turn {
  public:
-  explicit Turn(std::atomic<std::thread::id>& asked_by) : asked_by_(asked_by) {
-    const std::thread::id own = std::this_thread::get_id();
-    std::thread::id holder;
+  explicit Turn(std::atomic<const void*>& asked_by) : asked_by_(asked_by) {
+    const void* const own = this_thread();
+    const void* holder = nullptr;
     if (asked_by_.compare_exchange_strong(holder, own, std::memory_order_acquire, std::memory_order_relaxed))
       return;
     throw std::logic_error(
@@ -39,12 +44,12 @@ class Turn {
                         "asks the same object; ask another object there"
                       : "this SelfCollision is answering another thread; give each thread one of its own");
   }
-  ~Turn() { asked_by_.store({}, std::memory_order_release); }
+  ~Turn() { asked_by_.store(nullptr, std::memory_order_release); }
   Turn(const Turn&) = delete;
   Turn& operator=(const Turn&) = delete;
 
  private:
-  std::atomic<std::thread::id>& asked_by_;
+  std::atomic<const void*>& asked_by_;
 };
 
 // Asks an object, unless a call is asking it already.

@@ -3,16 +3,24 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
+#ifndef __wasm__
+#include <fstream>
 #include <sys/resource.h>
 #include <unistd.h>
+#endif
 
 namespace cscd {
 namespace {
+
+unsigned long long megabytes(std::uint64_t bytes) {
+  return bytes / 1'000'000;
+}
+
+#ifndef __wasm__
 
 constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
 
@@ -91,14 +99,18 @@ std::uint64_t left_by_groups() {
   return left;
 }
 
-unsigned long long megabytes(std::uint64_t bytes) {
-  return bytes / 1'000'000;
-}
+#endif
 
 }  // namespace
 
 std::uint64_t available_memory() {
+#ifdef __wasm__
+  // Memory grows to four gibibytes and never shrinks. What was freed within it is not counted.
+  constexpr std::uint64_t kPage = 1 << 16, kAddresses = std::uint64_t{1} << 32;
+  return kAddresses - kPage * __builtin_wasm_memory_size(0);
+#else
   return std::min({left_by_machine(), left_of_address_space(), left_by_groups()});
+#endif
 }
 
 MemoryShortage::MemoryShortage(std::size_t pairs, std::uint64_t needed, std::uint64_t left) noexcept {

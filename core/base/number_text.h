@@ -1,9 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <string>
 
 // Numbers as texts and messages say them.
@@ -11,8 +14,20 @@ namespace cscd {
 
 // In as few digits as tell the number from every other one.
 inline std::string exact_text(double number) {
+#ifdef __wasm__
+  // libc++'s std::to_chars() would bring tables of 100 kB. As there, the shorter notation is chosen.
+  char text[32], fixed[400];
+  int digits = 0;
+  do std::snprintf(text, sizeof text, "%.*e", digits, number);
+  while (std::strtod(text, nullptr) != number && ++digits < 17);
+  if (!std::isfinite(number)) return text;
+  std::snprintf(fixed, sizeof fixed, "%.*f", std::max(0, digits - std::atoi(std::strchr(text, 'e') + 1)),
+                number);
+  return std::strlen(fixed) <= std::strlen(text) ? fixed : text;
+#else
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
+#endif
 }
 
 // Rounded to so many significant digits; all digits before the point stand in any case, up to a size of 1e15.

@@ -41,6 +41,9 @@ inline Lane8 square_root(Lane8 a) {
   return Lane8::each([](auto r) { return _mm_sqrt_pd(r); }, a);
 #elif defined(CSCD_NEON)
   return Lane8::each([](auto r) { return vsqrtq_f64(r); }, a);
+#elif defined(__wasm_simd128__)
+  return Lane8::each(
+      [](auto r) { return reinterpret_cast<decltype(r)>(wasm_f64x2_sqrt(reinterpret_cast<v128_t>(r))); }, a);
 #else
   for (std::size_t l = 0; l < kLanes; ++l) a[l] = std::sqrt(a[l]);
   return a;
@@ -87,6 +90,13 @@ inline unsigned bits_of(Sign8 lanes) {
   };
   const uint8x8_t lanes_of_0 = vmovn_u16(vmovn_high_u32(vmovn_u32(zero(0)), zero(2)));
   return static_cast<unsigned>(vaddv_u8(vand_u8(vmvn_u8(lanes_of_0), vcreate_u8(0x8040201008040201U))));
+#elif defined(__wasm_simd128__)
+  const auto zero = [&](int i) {
+    return wasm_i64x2_eq(reinterpret_cast<v128_t>(lanes.part[i]), wasm_i64x2_const_splat(0));
+  };
+  const v128_t words = wasm_i8x16_narrow_i16x8(wasm_i16x8_narrow_i32x4(zero(0), zero(1)),
+                                               wasm_i16x8_narrow_i32x4(zero(2), zero(3)));
+  return ~wasm_i16x8_bitmask(words) & 0xff;
 #else
   unsigned bits = 0;
   for (std::size_t l = 0; l < kLanes; ++l) bits |= static_cast<unsigned>(lanes[l] != 0) << l;

@@ -45,6 +45,9 @@ inline Mask16 bits_of(const Int16& lanes) {
 #elif defined(CSCD_NEON)
   const auto packed = [&](int i) { return vmovn_high_s32(vmovn_s32(lanes.part[i]), lanes.part[i + 1]); };
   return bits_of_bytes(vreinterpretq_u8_s8(vmovn_high_s16(vmovn_s16(packed(0)), packed(2))));
+#elif defined(__wasm_simd128__)
+  const auto packed = [&](int i) { return wasm_i16x8_narrow_i32x4(lanes.part[i], lanes.part[i + 1]); };
+  return static_cast<Mask16>(wasm_i8x16_bitmask(wasm_i8x16_narrow_i16x8(packed(0), packed(2))));
 #else
   unsigned bits = 0;
   for (std::size_t l = 0; l < kLanes16; ++l) bits |= static_cast<unsigned>(lanes[l] & 1) << l;
@@ -99,6 +102,9 @@ inline Float16 square_root(Float16 v) {
   return Float16::each([](auto r) { return _mm_sqrt_ps(r); }, v);
 #elif defined(CSCD_NEON)
   return Float16::each([](auto r) { return vsqrtq_f32(r); }, v);
+#elif defined(__wasm_simd128__)
+  return Float16::each(
+      [](auto r) { return reinterpret_cast<decltype(r)>(wasm_f32x4_sqrt(reinterpret_cast<v128_t>(r))); }, v);
 #else
   for (std::size_t l = 0; l < kLanes16; ++l) v[l] = std::sqrt(v[l]);
   return v;
@@ -183,7 +189,8 @@ inline Float16 permuted(Float16 v, const Places16& place) {
   out.part[0] = part(0), out.part[1] = part(1), out.part[2] = part(2), out.part[3] = part(3);
   return out;
 #else
-  // By way of memory: SSE2 moves only what a constant names.
+  // By way of memory: SSE2 moves only what a constant names, and WebAssembly permutes single bytes of one
+  // register.
   float all[kLanes16];
   store(v, all);
   const auto part = [&](std::size_t i) {

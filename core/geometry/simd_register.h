@@ -10,6 +10,8 @@
 #elif defined(__ARM_NEON) && defined(__aarch64__)
 #include <arm_neon.h>
 #define CSCD_NEON
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 #include "core/geometry/simd_registers.h"
@@ -218,6 +220,11 @@ template <class To, class From>
     return _mm_movelh_ps(_mm_cvtpd_ps(a), _mm_cvtpd_ps(b));
 #elif defined(CSCD_NEON)
   if constexpr (std::is_same_v<To, VectorOf<float, 16>>) return vcvt_high_f32_f64(vcvt_f32_f64(a), b);
+#elif defined(__wasm_simd128__)
+  if constexpr (std::is_same_v<To, VectorOf<float, 16>>) {
+    const auto two = [](From v) { return wasm_f32x4_demote_f64x2_zero(reinterpret_cast<v128_t>(v)); };
+    return reinterpret_cast<To>(wasm_i64x2_shuffle(two(a), two(b), 0, 2));
+  }
 #endif
   using Half = VectorOf<std::remove_cvref_t<decltype(To{}[0])>, sizeof(To) / 2>;
   return joined<To>(__builtin_convertvector(a, Half), __builtin_convertvector(b, Half));
@@ -232,6 +239,12 @@ template <class To, int kHalf, class From>
 #elif defined(CSCD_NEON)
   if constexpr (std::is_same_v<From, VectorOf<float, 16>>)
     return kHalf == 0 ? vcvt_f64_f32(vget_low_f32(v)) : vcvt_high_f64_f32(v);
+#elif defined(__wasm_simd128__)
+  if constexpr (std::is_same_v<From, VectorOf<float, 16>>) {
+    const auto all = reinterpret_cast<v128_t>(v);
+    return reinterpret_cast<To>(
+        wasm_f64x2_promote_low_f32x4(kHalf == 0 ? all : wasm_i64x2_shuffle(all, all, 1, 0)));
+  }
 #endif
   using Half = VectorOf<std::remove_cvref_t<decltype(v[0])>, sizeof(From) / 2>;
   return __builtin_convertvector((half_of<Half, kHalf>(v)), To);

@@ -38,6 +38,13 @@ inline Mask32 above(Short32 a, Short32 b) {
         bits_of_bytes(vreinterpretq_u8_s8(vmovn_high_s16(vmovn_s16(lanes.part[i]), lanes.part[i + 1]))));
   };
   return bits(0) | bits(2) << 16;
+#elif defined(__wasm_simd128__)
+  const auto lanes = a > b;
+  const auto bits = [&](int i) {
+    return static_cast<Mask32>(wasm_i8x16_bitmask(wasm_i8x16_narrow_i16x8(
+        reinterpret_cast<v128_t>(lanes.part[i]), reinterpret_cast<v128_t>(lanes.part[i + 1]))));
+  };
+  return bits(0) | bits(2) << 16;
 #else
   const auto lanes = a > b;
   Mask32 bits = 0;

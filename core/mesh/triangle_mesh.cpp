@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
-#include <sstream>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 
 // Finds the connectivity of a triangle list by counting and small sorts. Every half-edge is put into the
 // bucket of its smaller end. Each bucket is sorted by the larger end; neighbours with equal ends are one
@@ -324,10 +324,8 @@ void require_finite(std::span<const Vec3> positions, const std::string& where) {
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Vec3& p = positions[i];
     if (p.allFinite()) continue;
-    std::ostringstream out;
-    out << where << ": vertex " << i << " is at (" << p.x() << ", " << p.y() << ", " << p.z()
-        << "); every coordinate must be finite";
-    throw InputError(out.str());
+    throw InputError(where + ": vertex " + std::to_string(i) + " is at (" + exact_text(p.x()) + ", " +
+                     exact_text(p.y()) + ", " + exact_text(p.z()) + "); every coordinate must be finite");
   }
 }
 
