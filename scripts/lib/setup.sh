@@ -15,6 +15,7 @@ packages_kernels=(libbenchmark-dev)
 packages_tests=(assimp-testmodels chromium clang-format pybind11-dev python3-dev python3-numpy python3-h5py
                 python3-pip python3-setuptools python3-wheel doxygen pkg-config)
 packages_clang=(clang)
+packages_wasm=(clang-19 lld-19 libc++-19-dev-wasm32 libc++abi-19-dev-wasm32 libclang-rt-19-dev-wasm32 wasi-libc)
 
 say() { printf '\n== %s\n' "$*"; }
 die() { printf '%s: %s\n' "${CSCD_SCRIPT:-${0##*/}}" "$*" >&2; exit 2; }  # Python scripts set CSCD_SCRIPT

@@ -1,0 +1,17 @@
+# CMAKE_TOOLCHAIN_FILE for WebAssembly with 128-bit SIMD, with Debian's clang 19 and its libc++ for WebAssembly.
+set(CMAKE_SYSTEM_NAME Generic)
+set(CMAKE_SYSTEM_PROCESSOR wasm32)
+set(CMAKE_C_COMPILER clang-19)
+set(CMAKE_CXX_COMPILER clang++-19)
+set(CMAKE_C_COMPILER_TARGET wasm32-wasi)
+set(CMAKE_CXX_COMPILER_TARGET wasm32-wasi)
+set(CMAKE_CXX_FLAGS_INIT "-msimd128 -fwasm-exceptions")
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG" CACHE STRING "")
+set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
+set(CMAKE_UNITY_BUILD ON)
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
+set(CMAKE_DISABLE_FIND_PACKAGE_TBB ON)
+# Only Boost's headers, without those of the machine's C library beside them.
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/boost)
+file(CREATE_LINK /usr/include/boost ${CMAKE_BINARY_DIR}/boost/boost SYMBOLIC)
+set(BOOST_INCLUDE ${CMAKE_BINARY_DIR}/boost)

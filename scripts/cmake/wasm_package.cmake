@@ -1,0 +1,26 @@
+# The npm package: cscd.wasm, linked of the rooms below one room, beside the package's own files in js/ of the build folder.
+#
+#   cscd_wasm_package(FOLDER ROOM)
+function(cscd_wasm_package path room)
+  cscd_rooms_below(rooms "^(core|library)(_|$)" ${room})
+  # In these, files have helpers of the same name; in the others, several files are compiled at once (wasm.cmake).
+  set_target_properties(core_detect core_crossing core_session PROPERTIES UNITY_BUILD OFF)
+  cscd_room_objects(objects ${rooms})
+  # What runs once a mesh, or decides the few pairs that no filter decides: the package is to be small.
+  foreach(room core_mesh core_elementary core_elementary_exact core_detect_start core_crossing core_radial core_fast_clusters core_fast_prepare
+          library)
+    target_compile_options(${room} PRIVATE -Oz)
+    set_target_properties(${room} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)  # they are parsed at another level
+  endforeach()
+  set(folder ${PROJECT_SOURCE_DIR}/${path})
+  set(package ${PROJECT_BINARY_DIR}/js)
+  add_executable(cscd_wasm ${folder}/bindings.cpp ${folder}/runtime.cpp ${objects})
+  set_target_properties(cscd_wasm PROPERTIES UNITY_BUILD OFF OUTPUT_NAME cscd SUFFIX .wasm RUNTIME_OUTPUT_DIRECTORY ${package})
+  target_link_libraries(cscd_wasm PRIVATE ${room} cscd_flags)
+  # A library without main(). Its stack lies below its data, so that an overflow traps.
+  target_link_options(cscd_wasm PRIVATE -mexec-model=reactor -Wl,--stack-first -Wl,-z,stack-size=1048576 -Wl,--strip-all)
+  file(GLOB files RELATIVE ${folder} CONFIGURE_DEPENDS ${folder}/*.js ${folder}/*.d.ts ${folder}/*.json ${folder}/README.md ${folder}/test/*.mjs ${folder}/test/*.ts)
+  foreach(file IN LISTS files)
+    configure_file(${folder}/${file} ${package}/${file} COPYONLY)
+  endforeach()
+endfunction()
