@@ -4,8 +4,8 @@
     digest.py FILE PASSES                          the module `cscd` is found by PYTHONPATH
     digest.py FILE PASSES PROGRAM SCENE FROM TO    first writes the file: steps of a scene, read by the program `cscd`
 
-After the pass that makes the digest, each question is asked in so many passes. Its time is the least mean of a pass, in
-milliseconds of processor time.
+After the pass that makes the digest, each question is asked in so many passes. Its time is the median over steps of the least
+processor time that a step took, in milliseconds.
 
 digest.mjs prints the same for the package. The file holds the numbers of faces, of vertices and of steps, the faces, and the start and
 the end of each step.
@@ -14,6 +14,7 @@ import hashlib
 import json
 import math
 import pathlib
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -74,11 +75,14 @@ def main(path, passes, *clip):
     def ask(name, asked, function, take):
         for arguments in asked:
             take(function(*arguments))
+        least = [math.inf] * len(asked)
         for _ in range(int(passes)):
-            begin = time.process_time()
-            for arguments in asked:
+            for i, arguments in enumerate(asked):
+                begin = time.process_time()
                 function(*arguments)
-            times[name] = min(times.get(name, math.inf), 1e3 * (time.process_time() - begin) / len(asked))
+                least[i] = min(least[i], 1e3 * (time.process_time() - begin))
+        if least[0] < math.inf:
+            times[name] = statistics.median(least)
 
     body = cscd.SelfCollision(faces, steps[0, 0])
     ask("first contact", steps, body.first_contact, add_answer)

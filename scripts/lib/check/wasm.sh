@@ -5,8 +5,8 @@
 #
 # BUILD is a folder with a build of the whole project. With it, the package and the library of BUILD have to give the same
 # answers to some steps of two scenes, bit by bit; with --all, to all steps of all scenes. With --times, a library for SSE2 is built, too,
-# and both are asked about 60 steps of each of the paper's scenes and of two clips with contacts. Times are processor time,
-# of the fastest of five passes.
+# and both are asked about 60 steps of each of the paper's scenes and of two clips with contacts. Times are medians over
+# steps of the least processor time of five passes.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
 source "$root/scripts/lib/setup.sh"
