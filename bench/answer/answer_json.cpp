@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "bench/answer/answer_text.h"
-#include "bench/answer/verdict_json.h"
+#include "bench/answer/verdicts.h"
 #include "bench/output/json_text.h"
 #include "core/detect/contact_geometry.h"
 
@@ -81,8 +81,9 @@ json thickness_json(const ClipAnswer& answer) {
   out["mean_edge"] = own.edge;
   out["left_out"] = nullptr;
   if (own.left_out)
-    out["left_out"] = {
-        {"rings", own.asked.rings}, {"near_rest", std::move(near)}, {"kept_at_rest", answer.kept_at_rest}};
+    out["left_out"] = {{"rings", own.asked.rings.value_or(0)},
+                       {"near_rest", std::move(near)},
+                       {"kept_at_rest", answer.kept_at_rest}};
   return out;
 }
 
@@ -231,7 +232,7 @@ json ignored_json(const Input& input) {
   if (!input.ignored) return nullptr;
   json pairs = json::array(), neighbours;
   for (const auto& [first, second] : input.ignored->names) pairs.push_back({first, second});
-  if (input.ignored->neighbours) neighbours = *input.ignored->neighbours;
+  if (input.ignored->asked.neighbours) neighbours = *input.ignored->asked.neighbours;
   return {{"pairs", std::move(pairs)}, {"neighbours", std::move(neighbours)}};
 }
 

@@ -7,9 +7,9 @@
 namespace cscd::bench {
 
 void require_sound(const AnswerRequest& request) {
-  if (request.resolution && !request.model.true_motion)
+  if (request.resolution.is_given() && !request.model.true_motion)
     throw InputError("--resolution: is for --true-motion; leave it out, or add that");
-  if (request.resolution && request.resolution->number == 0)
+  if (request.resolution.is_given() && request.resolution.number == 0)
     throw InputError(
         "--resolution 0: what only touches would be looked at without end; give a length above 0");
   const ElementaryTest& elementary = elementary_test_named(request.elementary);

@@ -5,9 +5,7 @@
 #include <vector>
 
 #include "bench/answer/answer.h"
-#include "bench/answer/ignore.h"
-#include "bench/inputs/import.h"
-#include "bench/inputs/thickness_request.h"
+#include "bench/inputs/input.h"
 
 namespace cscd::bench {
 
@@ -20,8 +18,8 @@ struct AnswerRequest {
   IgnoreRequest ignored;
   ThicknessRequest thickness;
   std::optional<double> interval_seconds;
-  std::optional<WrittenLength> resolution;  // with --true-motion
-  std::string preparation;                  // the file in which it is kept; empty for none
+  WrittenLength resolution;  // with --true-motion
+  std::string preparation;   // the file in which it is kept; empty for none
   int threads = 1;
   ModelOptions model;
 };

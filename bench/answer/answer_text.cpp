@@ -7,8 +7,11 @@
 #include <cstdio>
 #include <vector>
 
+#include "bench/answer/verdicts.h"
+#include "bench/inputs/input_options.h"
 #include "bench/inputs/thickness.h"
 #include "core/base/number_text.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {
@@ -49,11 +52,10 @@ std::string met_text(const NamePair& both, std::size_t intervals) {
 }
 
 std::string ignored_text(const Input& input, const AnswerSummary& s) {
-  std::string asked;
-  for (const NamePair& both : input.ignored->names) asked += " --ignore " + both.first + ":" + both.second;
-  if (input.ignored->neighbours)
-    asked += " --ignore-neighbours " + std::to_string(*input.ignored->neighbours);
-  if (s.with_ignored == 0) return "ignored: nothing that touches (" + asked.substr(1) + ")";
+  std::vector<std::string> words;
+  echo_options(ignore_options(), input.ignored->asked, words);
+  const std::string asked = " (" + joined(words, " ") + ")";
+  if (s.with_ignored == 0) return "ignored: nothing that touches" + asked;
   std::map<NamePair, std::size_t> intervals;
   std::size_t contacts = 0, pairs = 0;
   for (const auto& [both, here] : s.ignored) {
@@ -62,8 +64,7 @@ std::string ignored_text(const Input& input, const AnswerSummary& s) {
     pairs += here.start_pairs;
   }
   return "ignored: " + listed(intervals, met_text) + "; " + many(contacts, "contact") + " and " +
-         many(pairs, "crossing pair") + " of triangles in " + many(s.with_ignored, "interval") + " (" +
-         asked.substr(1) + ")";
+         many(pairs, "crossing pair") + " of triangles in " + many(s.with_ignored, "interval") + asked;
 }
 
 // "horse.glb, clip 'Walk' (14th of 14 clips), component 2 of 5 alone": what exactly a verdict is about.
@@ -100,9 +101,10 @@ std::string thickness_text(const ClipAnswer& answer) {
            " this close at the start of " + many(s.with_close_at_start, "interval");
   if (!own.left_out) return out;
   out += std::string(is_thick ? "; " : "") + "pairs of features that are near by construction are left out (";
-  if (own.asked.rings > 0) out += "--exclude-rings " + std::to_string(own.asked.rings);
+  const int rings = own.asked.rings.value_or(0);
+  if (rings > 0) out += "--exclude-rings " + std::to_string(rings);
   if (own.asked.near_rest.number > 0)
-    out += (own.asked.rings > 0 ? ", --exclude-near-rest " : "--exclude-near-rest ") +
+    out += (rings > 0 ? ", --exclude-near-rest " : "--exclude-near-rest ") +
            length_text(own.asked.near_rest, own.edge);
   const bool is_one = answer.kept_at_rest == 1;
   return out + "), and " + std::to_string(answer.kept_at_rest) + (is_one ? " other " : " others ") +

@@ -8,9 +8,9 @@
 
 #include "bench/answer/answer.h"
 #include "bench/answer/overlap_events.h"
-#include "bench/answer/surface_names.h"
 #include "bench/answer/true_answer.h"
 #include "bench/inputs/input.h"
+#include "bench/inputs/surface_names.h"
 
 namespace cscd::bench {
 

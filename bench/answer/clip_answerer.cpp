@@ -6,6 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "bench/inputs/ignore.h"
 #include "bench/inputs/thickness.h"
 #include "bench/output/output.h"
 #include "bench/output/progress.h"

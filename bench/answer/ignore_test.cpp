@@ -1,11 +1,11 @@
-#include "bench/answer/ignore.h"
+#include "bench/inputs/ignore.h"
 
 #include <gtest/gtest.h>
 #include <random>
 #include <set>
 
 #include "bench/answer/answer.h"
-#include "bench/answer/surface_names.h"
+#include "bench/inputs/surface_names.h"
 #include "bench/inputs/test_inputs.h"
 #include "bench/strategies/catalogue.h"
 #include "bench/testing/test_generated.h"

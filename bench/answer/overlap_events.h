@@ -9,7 +9,7 @@
 
 #include "bench/answer/answer.h"
 #include "bench/answer/rest_depths.h"
-#include "bench/answer/surface_names.h"
+#include "bench/inputs/surface_names.h"
 #include "core/crossing/overlaps.h"
 #include "core/crossing/pieces.h"
 

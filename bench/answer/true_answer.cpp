@@ -5,7 +5,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "bench/answer/verdict_json.h"
 #include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/base/number_text.h"
@@ -25,11 +24,11 @@ constexpr double kAtKey = 1e-5;
 constexpr double kSamePlace = 1e-5;
 
 TrueMotionOptions options_of(const Input& input, const RestCrossings& left_out, const AnswerOptions& options,
-                             const std::optional<WrittenLength>& resolution) {
+                             const WrittenLength& resolution) {
   if (input.thickness.length > 0)
     throw InputError("--true-motion: takes no --thickness; leave one of the two out");
   TrueMotionOptions out = true_motion_options(input.thickness.edge);
-  if (resolution) out.resolution = resolution->length(input.thickness.edge);
+  if (resolution.is_given()) out.resolution = resolution.length(input.thickness.edge);
   out.ignored = input.ignored ? &input.ignored->triangles : nullptr;
   out.left_out = options.keep_rest_crossings ? nullptr : &left_out;
   return out;
@@ -83,7 +82,7 @@ std::string first_text(const Input& input, const TrueSummary::Meeting& first) {
 }  // namespace
 
 TrueAnswerer::TrueAnswerer(const Input& input, const ElementaryTest& elementary, const Crossings& rest,
-                           const AnswerOptions& options, const std::optional<WrittenLength>& resolution)
+                           const AnswerOptions& options, const WrittenLength& resolution)
     : input_(input),
       left_out_(input.mesh, rest),
       motion_(*input.motion, input.setup(elementary), complete_fallback(),

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "bench/answer/answer.h"
-#include "bench/answer/surface_names.h"
+#include "bench/answer/verdicts.h"
+#include "bench/inputs/surface_names.h"
 #include "core/session/true_motion.h"
 
 // Answers about the true motion of a model file beside those about straight lines between its frames.
@@ -16,7 +17,7 @@ class TrueAnswerer {
   // Throws InputError where the input or the elementary test does not fit. `rest` is what crosses at rest.
   // All arguments must outlive it.
   TrueAnswerer(const Input& input, const ElementaryTest& elementary, const Crossings& rest,
-               const AnswerOptions& options, const std::optional<WrittenLength>& resolution = {});
+               const AnswerOptions& options, const WrittenLength& resolution = {});
 
   // Adds to an answer about straight lines, whose motion is given, what is known of the true motion.
   // Intervals come in growing order.

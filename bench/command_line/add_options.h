@@ -2,33 +2,47 @@
 
 #include <CLI/App.hpp>
 
-#include "bench/records/option_rows.h"
+#include "bench/command_line/option_rows.h"
 
 namespace cscd::bench {
 
-// Adds the options of rows to a command. `owner` must live as long as the command. Help names the default of
-// an option unless it is empty or zero, which stands for one that depends on other options.
+// Adds the options of rows to a command, in a group of its help. `owner` must live as long as the command.
+// Help names the default of an option unless it is empty or zero, which stands for one that depends on other
+// options.
 template <class Owner>
-void add_options(CLI::App& command, std::span<const OptionRow<Owner>> rows, Owner& owner) {
+void add_options(CLI::App& command, std::span<const OptionRow<Owner>> rows, Owner& owner,
+                 const std::string& group = "Options") {
   for (const OptionRow<Owner>& row : rows)
     std::visit(
         [&](const auto& member) {
           auto& value = owner.*member;
           using Value = std::decay_t<decltype(value)>;
+          CLI::Option* option = nullptr;
           if constexpr (std::is_same_v<Value, bool>) {
-            command.add_flag(row.name, value, row.help);
+            option = command.add_flag(row.name, value, row.help);
+          } else if constexpr (std::is_same_v<Value, WrittenLength>) {
+            const auto take = [&value, name = row.name](const std::string& text) {
+              value = parse_length(name, text);
+            };
+            option = command.add_option_function<std::string>(row.name, take, row.help);
           } else {
-            CLI::Option* option = command.add_option(row.name, value, row.help);
-            if constexpr (std::is_same_v<Value, std::vector<double>>) {
-              if (row.range) option->check(CLI::Range(row.range->first, row.range->second));
-            } else if (row.range) {
+            constexpr bool is_real = std::is_same_v<Value, double> ||
+                                     std::is_same_v<Value, std::optional<double>> ||
+                                     std::is_same_v<Value, std::vector<double>>;
+            using Number = std::conditional_t<is_real, double, int>;
+            option = command.add_option(row.name, value, row.help);
+            if (row.range)
               option->check(
-                  CLI::Range(static_cast<int>(row.range->first), static_cast<int>(row.range->second)));
-            }
-            if constexpr (requires { value.front(); } && !std::is_same_v<Value, std::string>)
+                  CLI::Range(static_cast<Number>(row.range->first), static_cast<Number>(row.range->second)));
+            if (!row.choices.empty()) option->check(CLI::IsMember(row.choices));
+            if (row.repeats)
+              option->allow_extra_args(false);
+            else if constexpr (requires { value.front(); } && !std::is_same_v<Value, std::string>)
               option->delimiter(',');
             if (value != Value{}) option->capture_default_str();
           }
+          if (row.type != nullptr) option->type_name(row.type);
+          option->group(group);
         },
         row.member);
 }

@@ -7,6 +7,7 @@
 #include "bench/harness/contestant.h"
 #include "bench/harness/interval_choice.h"
 #include "bench/harness/measurement.h"
+#include "bench/inputs/input_options.h"
 #include "bench/records/environment.h"
 #include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
@@ -28,25 +29,11 @@ constexpr std::size_t kSmokeIntervals = 8, kSmokeRepetitions = 2, kSmokeEvery = 
 
 // Returns the command line with every default spelt out, and without the place of the result.
 std::vector<std::string> command_line(const ReplayRequest& options, const Input& input) {
-  std::vector<std::string> words = {"cscd", "run"};
-  const auto add = [&](const char* name, const std::string& value) {
-    words.insert(words.end(), {name, value});
-  };
-  add("--scene", options.scene);
+  std::vector<std::string> words = {"cscd", "run", "--scene", options.scene};
   echo_options(replay_options(), options, words);
-  add("--threads", std::to_string(options.threads));
-  if (input.ignored) {
-    for (const auto& [first, second] : input.ignored->names) add("--ignore", first + ":" + second);
-    if (input.ignored->neighbours) add("--ignore-neighbours", std::to_string(*input.ignored->neighbours));
-  }
-  const ThicknessRequest& near = input.thickness.asked;
-  if (near.thickness.number > 0) add("--thickness", near.thickness.text);
-  if (near.rings > 0) add("--exclude-rings", std::to_string(near.rings));
-  if (near.near_rest.number > 0) add("--exclude-near-rest", near.near_rest.text);
-  if (input.import) {
-    const std::vector<std::string> model = to_arguments(options.model.import);
-    words.insert(words.end(), model.begin(), model.end());
-  }
+  if (input.ignored) echo_options(ignore_options(), input.ignored->asked, words);
+  echo_options(thickness_options(), input.thickness.asked, words);
+  if (input.import) echo_options(import_options(), options.model.import, words);
   return words;
 }
 
@@ -107,9 +94,12 @@ std::span<const OptionRow<ReplayRequest>> replay_options() {
        "--first\"\n"
        "looks for the earliest contact alone"},
       {"--elementary", &R::elementary, "the elementary test that is timed"},
-      {"--pipeline", &R::pipeline,
-       "`published` measures the paper's rows with the paper's code: scalar refit and orientation, its\n"
-       "filter alone, one feature pair after the other; `today` with this project's"},
+      {.name = "--pipeline",
+       .member = &R::pipeline,
+       .help =
+           "`published` measures the paper's rows with the paper's code: scalar refit and orientation, its\n"
+           "filter alone, one feature pair after the other; `today` with this project's",
+       .choices = {"today", "published"}},
       {"--frames", &R::frames, "A:B, the intervals between frames A and B; default all"},
       {"--repetitions", &R::repetitions, "how often each interval is timed", {{1, 1000}}},
       {"--count-every", &R::count_every,
@@ -122,7 +112,10 @@ std::span<const OptionRow<ReplayRequest>> replay_options() {
       {"--verify-every", &R::verify_every,
        "verify each K-th interval, from the first, and all that are timed", kPositive},
       {"--seed", &R::seed, "of the order in which strategies run"},
-      {"--smoke", &R::smoke, "8 intervals in the middle, every 4th of them verified and timed twice"}};
+      {"--smoke", &R::smoke, "8 intervals in the middle, every 4th of them verified and timed twice"},
+      {"--counts", &R::counts,
+       "verdicts, counters and digests alone, which every machine repeats to the bit; no times"},
+      threads_option<R>()};
   return rows;
 }
 
@@ -134,8 +127,8 @@ void require_sound(const ReplayRequest& request) {
   rows_called(request.strategies);
 }
 
-Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
-  Replay replay{kind, asked, {}, {}, {}};
+Replay resolve(Input& input, const ReplayRequest& asked) {
+  Replay replay{asked, {}, {}, {}};
   ReplayRequest& request = replay.request;
   IntervalRange range = parse_frames(request.frames, input);
   if (request.smoke) {
@@ -161,7 +154,7 @@ Replay resolve(Input& input, const ReplayRequest& asked, ReplayKind kind) {
   replay.range = range;
   Section& section = replay.section;
   section.thickness = input.thickness.length;
-  if (kind == ReplayKind::timings) section.timed = intervals_to_time(input, range, request);
+  if (!request.counts) section.timed = intervals_to_time(input, range, request);
   section.verified = united(std::vector{every_kth(range, request.verify_every), section.timed});
   section.counted = united(std::vector{every_kth(range, request.count_every), section.verified});
   return replay;
@@ -207,7 +200,7 @@ Record execute(Input& input, const Replay& replay) {
       row.counts.clear(), row.digests.clear(), row.first_times.clear(), row.ms.clear();
   record.verification = std::move(measured.verification);
   record.strategies = std::move(measured.rows);
-  if (replay.kind == ReplayKind::counts) leave_out_what_varies(record);
+  if (replay.request.counts) leave_out_what_varies(record);
   return record;
 }
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "bench/command_line/option_rows.h"
 #include "bench/harness/measurement.h"
 #include "bench/inputs/input.h"
-#include "bench/records/option_rows.h"
 #include "bench/records/record.h"
 
 // One measurement as a value, and its execution: a run of the whole input and each part of a divided run are
@@ -24,23 +24,20 @@ struct ReplayRequest {
               seed = 2014;
   int threads = 1;
   bool smoke = false;
+  // Only what every machine repeats to the bit: verdicts, counters and digests.
+  bool counts = false;
   ModelOptions model;
 };
 
-// The options that a record echoes, but for the input, the threads, and what belongs to the input.
+// The options that a record echoes, but for the input and what belongs to it.
 std::span<const OptionRow<ReplayRequest>> replay_options();
 
 // Throws InputError where names are not known or do not go together. It opens nothing.
 void require_sound(const ReplayRequest& request);
 
-// `counts` takes what every machine repeats to the bit: verdicts, counters and digests. `timings` takes these
-// and also times and footprints.
-enum class ReplayKind { counts, timings };
-
 // A request that has been resolved for one input: its strategies are rows without groups, and it says in
 // numbers what `smoke` stands for.
 struct Replay {
-  ReplayKind kind;
   ReplayRequest request;
   std::vector<std::string> command;  // the command line of the whole run, with every default spelt out
   IntervalRange range;               // that the command spans
@@ -48,10 +45,10 @@ struct Replay {
 };
 
 // Throws InputError where the input has no such frames, or allows none of the strategies.
-Replay resolve(Input& input, const ReplayRequest& request, ReplayKind kind);
-// Verifies, counts and, where the kind says so, times. The record has no counters and no times if a strategy
-// breaks its promise. A record of the kind `counts` holds nothing that another run of the same program on the
-// same input would not repeat.
+Replay resolve(Input& input, const ReplayRequest& request);
+// Verifies, counts and, unless `counts` alone are asked for, times. The record has no counters and no times
+// if a strategy breaks its promise. A record of counts alone holds nothing that another run of the same
+// program on the same input would not repeat.
 Record execute(Input& input, const Replay& replay);
 
 }  // namespace cscd::bench

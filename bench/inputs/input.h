@@ -22,12 +22,19 @@
 
 namespace cscd::bench {
 
-// What the user ignores in the answers about an input.
+// What a user asks to be ignored.
+struct IgnoreRequest {
+  // Each is "A:B". A and B name bones, parts or meshes, and * in them stands for any letters. Names may hold
+  // colons, as long as one way alone to cut the text gives two names that the input has.
+  std::vector<std::string> pairs = {};
+  std::optional<int> neighbours = {};  // bones that are at most so many joints apart
+};
+
+// The same for one input.
 struct Ignored {
-  std::vector<std::pair<std::string, std::string>>
-      names;                      // of places that ignore each other, with * for any letters
-  std::optional<int> neighbours;  // bones that are at most so many joints apart ignore each other
-  Exclusions triangles;           // the pairs of triangles that these two come to
+  IgnoreRequest asked;
+  std::vector<std::pair<std::string, std::string>> names;  // the pairs that are asked, cut in two
+  Exclusions triangles;                                    // the pairs of triangles that all this comes to
 };
 
 // Which axis of an input points up, for whoever looks at it. No answer depends on it.

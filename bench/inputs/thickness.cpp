@@ -51,7 +51,7 @@ void set_thickness(Input& input, const ThicknessRequest& request, bool with_igno
   if (!request.leaves_out()) return;
   Exclusions left_out;
   if (with_ignored && input.ignored) left_out = input.ignored->triangles;
-  left_out.exclude_rings(input.mesh, request.rings);
+  left_out.exclude_rings(input.mesh, request.rings.value_or(0));
   left_out.exclude_near(input.rest(), length_in(input, request.near_rest, "--exclude-near-rest", out.edge));
   out.left_out = std::make_shared<const Exclusions>(std::move(left_out));
 }
@@ -69,7 +69,7 @@ void require_fit(const ThicknessRequest& request, const Strategy& strategy) {
   const bool by_distance = request.thickness.number > 0 && !strategy.knows_distance;
   throw InputError(
       (by_distance ? "--thickness " + request.thickness.text
-                   : std::string(request.rings > 0 ? "--exclude-rings" : "--exclude-near-rest")) +
+                   : std::string(request.rings.value_or(0) > 0 ? "--exclude-rings" : "--exclude-near-rest")) +
       ": strategy " + std::string(strategy.name) + " cannot answer that, as " + why + "; choose one of " +
       names_of_rows(strategies(), [&](const Strategy& row) { return why_not_within(request, row).empty(); }));
 }

@@ -120,7 +120,7 @@ TEST_F(PipelineRun, RefusesWhatThePaperDoesNotHave) {
   const std::string begin = "cscd run --scene small --json r.json --pipeline ";
   expect_refused(run(begin + "published --strategy drvbc_fast"), "not of the paper");
   expect_refused(run(begin + "published --elementary cubic"), "leave --elementary out");
-  expect_refused(run(begin + "tomorrow"), "choose one of today, published");
+  expect_refused(run(begin + "tomorrow"), "tomorrow not in {today,published}");
   EXPECT_EQ(files(), "");
 }
 

@@ -4,14 +4,13 @@
 #include <deque>
 #include <filesystem>
 
-#include "bench/answer/ignore.h"
-#include "bench/answer/options/answer_options.h"
-#include "bench/answer/options/model_options.h"
 #include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/harness/contestant.h"
 #include "bench/harness/replay.h"
+#include "bench/inputs/ignore.h"
 #include "bench/inputs/input.h"
+#include "bench/inputs/input_options.h"
 #include "bench/inputs/thickness.h"
 #include "bench/measure/shards/shards.h"
 #include "bench/output/json_text.h"
@@ -35,7 +34,7 @@ struct RunOptions {
   IgnoreRequest ignored;
   ThicknessRequest thickness;
   std::string output;
-  bool force = false, counts = false;
+  bool force = false;
   // Where results of shards are kept. Without a folder, the run is not divided.
   std::string shards, worker;
   std::size_t shard_intervals = 100;
@@ -126,10 +125,6 @@ Input open(const RunOptions& options, const ReplayRequest& request) {
   return input;
 }
 
-Replay replay_of(const RunOptions& options, Input& input, const ReplayRequest& request) {
-  return resolve(input, request, options.counts ? ReplayKind::counts : ReplayKind::timings);
-}
-
 Record measured(const RunOptions& options, Input& input, const Replay& replay) {
   if (options.shards.empty()) return execute(input, replay);
   const std::vector<RunShard> shards = divide(input, replay, options.shard_intervals);
@@ -140,7 +135,7 @@ Record measured(const RunOptions& options, Input& input, const Replay& replay) {
 // Whether every strategy kept its promise.
 bool run_one(const RunOptions& options, const ReplayRequest& request, OutputFile& output) {
   Input input = open(options, request);
-  const Record record = measured(options, input, replay_of(options, input, request));
+  const Record record = measured(options, input, resolve(input, request));
   print(record.verification, request.elementary, record.thickness > 0);
   output.commit(json_text(to_json(record)));
   std::printf("%s", run_times_text(record).c_str());
@@ -196,7 +191,7 @@ bool work(const RunOptions& options) {
   const Worker worker = parse_worker(options.worker);
   Input input = open(options, options.request);
   const std::vector<RunShard> shards =
-      divide(input, replay_of(options, input, options.request), options.shard_intervals);
+      divide(input, resolve(input, options.request), options.shard_intervals);
   const bool ok = measure_shards(input, shards, worker, options.shards);
   std::printf("worker %s is done; %zu of %zu shards have no result yet\n", options.worker.c_str(),
               missing_results(shards, options.shards), shards.size());
@@ -244,8 +239,6 @@ void add_replay_options(CLI::App& command, ReplayRequest& request) {
       ->allow_extra_args(false)
       ->option_text("TEXT=" + request.scene);
   add_options(command, replay_options(), request);
-  command.get_option("--pipeline")->type_name("TEXT:{today,published}");
-  add_threads_option(command, request.threads);
   add_model_options(command, request.model);
 }
 
@@ -272,8 +265,8 @@ void add_run(CLI::App& app) {
       "pairs of\n"
       "triangles, a thousand million of them on the rope at every interval, and the ablation.");
   add_replay_options(*command, options->request);
-  add_ignore_options(*command, options->ignored);
-  add_thickness_options(*command, options->thickness);
+  add_options(*command, ignore_options(), options->ignored);
+  add_options(*command, thickness_options(), options->thickness);
   CLI::Option* json =
       command
           ->add_option(
@@ -283,8 +276,6 @@ void add_run(CLI::App& app) {
           ->type_name("FILE")
           ->required();
   command->add_flag("--force", options->force, "replace the output if it exists");
-  command->add_flag("--counts", options->counts,
-                    "verdicts, counters and digests alone, which every machine repeats to the bit; no times");
   CLI::Option* shards =
       command
           ->add_option("--shards", options->shards,

@@ -5,10 +5,10 @@
 #include <random>
 #include <thread>
 
-#include "bench/answer/options/model_options.h"
 #include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/inputs/input.h"
+#include "bench/inputs/input_options.h"
 #include "bench/inputs/thickness.h"
 #include "bench/measure/studies/scale_study.h"
 #include "bench/measure/studies/scale_summary.h"
@@ -44,8 +44,10 @@ struct ScaleOptions {
 std::span<const OptionRow<ScaleOptions>> scale_options() {
   using S = ScaleOptions;
   static const OptionRow<S> rows[] = {
-      {"--study", &S::studies,
-       "size, step, bones, threads, contacts, thickness, with commas; default all but the last"},
+      {.name = "--study",
+       .member = &S::studies,
+       .help = "size, step, bones, threads, contacts, thickness, with commas; default all but the last",
+       .choices = {"size", "step", "bones", "threads", "contacts", "thickness"}},
       {"--scene", &S::scenes,
        "scenes with commas; default the six, and cloth for contacts and thickness; point caches\n"
        "for thickness"},
@@ -58,7 +60,8 @@ std::span<const OptionRow<ScaleOptions>> scale_options() {
       {"--reference-up-to", &S::reference_limit,
        "triangles up to which the reference answers and is timed on every interval"},
       {"--seed", &S::seed, "of the order of the strategies"},
-      {"--smoke", &S::smoke, "small surfaces, in seconds; times mean nothing"}};
+      {"--smoke", &S::smoke, "small surfaces, in seconds; times mean nothing"},
+      threads_option<S>()};
   return rows;
 }
 
@@ -216,18 +219,8 @@ bool takes(const ScaleOptions& options, std::string_view study, const std::strin
   return std::ranges::find(options.studies, study) != options.studies.end();
 }
 
-std::string study_names(const std::string& between = ", ") {
-  std::string names;
-  for (const auto& study : kStudies) names += (names.empty() ? "" : between) + std::string(study.name);
-  return names;
-}
-
 // Returns the subjects of a full run, or of a small one.
 std::vector<ScaleSubject> planned(const ScaleOptions& options) {
-  for (const std::string& study : options.studies)
-    if (std::ranges::find(kStudies, study, [](const auto& s) { return std::string(s.name); }) ==
-        std::end(kStudies))
-      throw InputError("--study " + study + ": is not known; choose among " + study_names());
   Plan plan(options);
   for (const std::string& scene : plan.scenes())
     for (const auto& study : kStudies) {
@@ -258,7 +251,6 @@ std::vector<std::string> command_line(ScaleOptions options, std::span<const Scal
   options.repetitions = all.front().repetitions;
   std::vector<std::string> words = {"cscd", "scale"};
   echo_options<ScaleOptions>(scale_options(), options, words);
-  words.insert(words.end(), {"--threads", std::to_string(options.threads)});
   return words;
 }
 
@@ -351,8 +343,6 @@ void add_scale(CLI::App& app) {
       "--reference-up-to on one interval a step, and the others against each other. Exit status 1 where an\n"
       "answer is wrong. \"STRATEGY --first\" looks for the earliest contact alone.");
   add_options(*command, scale_options(), *options);
-  command->get_option("--study")->type_name("TEXT:{" + study_names(",") + "}");
-  add_threads_option(*command, options->threads);
   command->add_option("--json", options->output, "where the record goes");
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->callback([options] { run_scale(*options); });

@@ -383,7 +383,7 @@ TEST_F(ScaleProgram, TakesPointCachesAtAThicknessAlone) {
 
 TEST_F(ScaleProgram, RefusesInOneLine) {
   const std::pair<std::vector<std::string>, const char*> refusals[] = {
-      {{"--study", "colour"}, "choose among size, step, bones, threads, contacts"},
+      {{"--study", "colour"}, "colour not in {size,step,bones,threads,contacts,thickness}"},
       {{"--study", "thickness", "--strategy", "mcd"}, "choose one of base, "},
       {{"--scene", "step.h5"}, "leave nothing to measure"},
       {{"--steps", "1,2.5"}, "round it"},

@@ -44,6 +44,10 @@ TEST_F(Shards, JoinToWhatOneRunCounts) {
   for (std::size_t s = 0; s < 3; ++s)
     for (const char* key : {"name", "guarantee", "counts", "digests", "first_times"})
       EXPECT_EQ(one.at("strategies").at(s).at(key), many.at("strategies").at(s).at(key)) << key;
+  for (const auto& [record, is_echoed] : {std::pair(&one, false), std::pair(&many, true)}) {
+    const std::vector<std::string> words = record->at("command");
+    EXPECT_EQ(std::ranges::count(words, "--counts") > 0, is_echoed);
+  }
   EXPECT_EQ(schema_violation(many, "run.schema.json"), "");
   EXPECT_EQ(run("cscd tables shards.json").status, 0);
 }

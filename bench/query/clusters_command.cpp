@@ -1,9 +1,9 @@
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
-#include "bench/answer/options/model_options.h"
 #include "bench/command_line/command.h"
 #include "bench/inputs/input.h"
+#include "bench/inputs/input_options.h"
 #include "bench/output/output.h"
 #include "bench/query/view/strategy_observers.h"
 #include "bench/strategies/catalogue.h"

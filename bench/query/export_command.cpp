@@ -1,8 +1,9 @@
 #include <CLI/App.hpp>
 #include <cstdio>
 
+#include "bench/answer/answer_options.h"
 #include "bench/answer/clip_answerer.h"
-#include "bench/answer/options/answer_options.h"
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/inputs/input.h"
 #include "bench/output/output.h"
@@ -121,11 +122,13 @@ void add_export(CLI::App& app) {
   add_answer_options(*command, *options);
   command->add_option("output", options->output, "the file to write; its extension names the format")
       ->required();
-  command->add_flag("--bake", options->bake, "a .glb of positions alone, as morph targets, from any input");
-  command->add_flag("--events", options->events,
-                    "a .ply with how deep each vertex lies in another piece, as quality and colour, and "
-                    "NAME.curves.0000.obj with the curves in which the surface crosses itself");
-  command->add_flag("--force", options->force, "replace the output if it exists");
+  static const OptionRow<ExportOptions> rows[] = {
+      {"--bake", &ExportOptions::bake, "a .glb of positions alone, as morph targets, from any input"},
+      {"--events", &ExportOptions::events,
+       "a .ply with how deep each vertex lies in another piece, as quality and colour, and "
+       "NAME.curves.0000.obj with the curves in which the surface crosses itself"},
+      {"--force", &ExportOptions::force, "replace the output if it exists"}};
+  add_options<ExportOptions>(*command, rows, *options);
   command->callback([options, command] {
     options->answer_option = given_answer_option(*command);
     export_input(*options);

@@ -4,10 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/answer/answer_text.h"
-#include "bench/answer/options/answer_options.h"
-#include "bench/answer/options/model_options.h"
 #include "bench/command_line/command.h"
 #include "bench/inputs/input.h"
+#include "bench/inputs/input_options.h"
 #include "bench/inputs/thickness.h"
 #include "bench/output/output.h"
 #include "bench/strategies/catalogue.h"
@@ -315,7 +314,7 @@ void add_inspect(CLI::App& app) {
   command->add_option("input", options->input, kInputHelp)->required();
   command->add_option("--json", options->output, "where the same goes for a machine to read");
   command->add_flag("--force", options->force, "replace the output if it exists");
-  add_thickness_option(*command, options->thickness);
+  add_options(*command, thickness_options().first(1), options->thickness);
   add_model_options(*command, options->model);
   command->callback([options] { inspect(*options); });
 }

@@ -9,10 +9,11 @@
 #include <set>
 
 #include "bench/answer/answer_json.h"
+#include "bench/answer/answer_options.h"
 #include "bench/answer/answer_text.h"
 #include "bench/answer/clip_answerer.h"
-#include "bench/answer/options/answer_options.h"
-#include "bench/answer/verdict_json.h"
+#include "bench/answer/verdicts.h"
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/inputs/input.h"
 #include "bench/output/output.h"
@@ -29,7 +30,7 @@ constexpr std::size_t kStartPairs = 1000;  // listed of an interval, unless all 
 struct QueryOptions : AnswerRequest {
   std::string output, start_pairs;
   bool force = false, fail_on_contact = false;
-  std::optional<WrittenLength> fail_deeper_than;
+  WrittenLength fail_deeper_than;
 };
 
 std::size_t most_start_pairs(const std::string& text) {
@@ -63,8 +64,8 @@ Said say_clip(const QueryOptions& options, Input input, JsonStream* document, bo
   Said said;
   said.verdict = answer.verdict();
   said.apart = verdict_exceptions(answer);
-  if (options.fail_deeper_than) {
-    const DepthCheck check = check_depth(answer, *options.fail_deeper_than);
+  if (options.fail_deeper_than.is_given()) {
+    const DepthCheck check = check_depth(answer, options.fail_deeper_than);
     said.too_deep = check.fails;
     std::printf("  %s\n", check.text.c_str());
   }
@@ -232,23 +233,21 @@ void add_query(CLI::App& app) {
       "itself:\n"
       "which piece in which, how deep, and from when to when. The JSON has all of them.");
   add_answer_options(*command, *options);
-  command->add_option("--json", options->output, "where the whole answer goes; - is standard output");
-  command->add_flag("--force", options->force, "replace the output if it exists");
-  command->add_option(
-      "--start-pairs", options->start_pairs,
-      "how many of the pairs of triangles that cross at a start are listed, or all; default 1000");
-  command->add_flag("--fail-on-contact", options->fail_on_contact,
-                    "exit with status 3 when anything touches, crosses, or comes within the thickness; with\n"
-                    "--true-motion, in its true motion");
-  command
-      ->add_option_function<std::string>(
-          "--fail-deeper-than",
-          [options = options.get()](const std::string& text) {
-            options->fail_deeper_than = parse_length("--fail-deeper-than", text);
-          },
-          "exit with status 3 when a piece of the surface lies deeper in another in any frame: a length such "
-          "as 0.01, or 0.2e for mean edges of the pose at rest")
-      ->type_name("LENGTH");
+  static const OptionRow<QueryOptions> rows[] = {
+      {"--json", &QueryOptions::output, "where the whole answer goes; - is standard output"},
+      {"--force", &QueryOptions::force, "replace the output if it exists"},
+      {"--start-pairs", &QueryOptions::start_pairs,
+       "how many of the pairs of triangles that cross at a start are listed, or all; default 1000"},
+      {"--fail-on-contact", &QueryOptions::fail_on_contact,
+       "exit with status 3 when anything touches, crosses, or comes within the thickness; with\n"
+       "--true-motion, in its true motion"},
+      {.name = "--fail-deeper-than",
+       .member = &QueryOptions::fail_deeper_than,
+       .help = "exit with status 3 when a piece of the surface lies deeper in another in any frame: a length "
+               "such "
+               "as 0.01, or 0.2e for mean edges of the pose at rest",
+       .type = "LENGTH"}};
+  add_options<QueryOptions>(*command, rows, *options);
   command->callback([options] { query(*options); });
 }
 

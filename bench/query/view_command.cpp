@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "bench/answer/answer_json.h"
+#include "bench/answer/answer_options.h"
 #include "bench/answer/clip_answerer.h"
-#include "bench/answer/options/answer_options.h"
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/command_line/usage.h"
 #include "bench/inputs/input.h"
@@ -212,14 +213,15 @@ void add_view(CLI::App& app) {
       "the\n"
       "clip's box for the page; the answers come from the exact ones.");
   add_answer_options(*command, *options, true);
-  command
-      ->add_option("--up", options->up,
-                   "the axis that points up, where the input does not say it or says it wrongly")
-      ->check(CLI::IsMember(std::vector<std::string>(scenes::kUpAxes.begin(), scenes::kUpAxes.end())));
-  command->add_option("-o,--out", options->output,
-                      "the .html file to write; default the input's name with that extension, here");
-  command->add_flag("--force", options->force,
-                    "replace the output even if it is no page that cscd view wrote");
+  const OptionRow<ViewOptions> rows[] = {
+      {.name = "--up",
+       .member = &ViewOptions::up,
+       .help = "the axis that points up, where the input does not say it or says it wrongly",
+       .choices = {scenes::kUpAxes.begin(), scenes::kUpAxes.end()}},
+      {"-o,--out", &ViewOptions::output,
+       "the .html file to write; default the input's name with that extension, here"},
+      {"--force", &ViewOptions::force, "replace the output even if it is no page that cscd view wrote"}};
+  add_options<ViewOptions>(*command, rows, *options);
   command->callback([options] {
     if (options->output.empty())
       options->output = std::filesystem::path(short_name(options->input)).stem().string() + ".html";

@@ -18,11 +18,4 @@ std::string_view to_string(IntervalVerdict verdict) {
   return "";
 }
 
-IntervalVerdict VerdictCounts::worst() const {
-  for (const IntervalVerdict verdict : {IntervalVerdict::intersects_at_start, IntervalVerdict::touches,
-                                        IntervalVerdict::close, IntervalVerdict::undecided})
-    if ((*this)[verdict] > 0) return verdict;
-  return IntervalVerdict::clear;
-}
-
 }  // namespace cscd

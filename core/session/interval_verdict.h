@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <map>
 #include <string_view>
 
 namespace cscd {
@@ -23,31 +21,5 @@ enum class IntervalVerdict {
   close
 };
 std::string_view to_string(IntervalVerdict verdict);
-
-// Whether something touches or crosses.
-constexpr bool meets(IntervalVerdict verdict) {
-  return verdict == IntervalVerdict::touches || verdict == IntervalVerdict::intersects_at_start;
-}
-// Whether something touches, crosses, or comes within the thickness.
-constexpr bool collides(IntervalVerdict verdict) {
-  return meets(verdict) || verdict == IntervalVerdict::close;
-}
-
-// How many intervals have each verdict.
-class VerdictCounts {
- public:
-  void add(IntervalVerdict verdict) { ++counts_[verdict], ++total_; }
-  std::size_t operator[](IntervalVerdict verdict) const {
-    const auto found = counts_.find(verdict);
-    return found == counts_.end() ? 0 : found->second;
-  }
-  std::size_t total() const { return total_; }
-  // The worst verdict of any interval: intersects_at_start, then touches, close, undecided and clear.
-  IntervalVerdict worst() const;
-
- private:
-  std::map<IntervalVerdict, std::size_t> counts_;
-  std::size_t total_ = 0;
-};
 
 }  // namespace cscd

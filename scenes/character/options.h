@@ -14,7 +14,7 @@ struct ImportOptions {
   std::optional<double> fps;               // frames a second; nothing: see frame_rate (frame_rate.h)
   bool from_bind_pose = false;             // put half a second from the bind pose before the clip
   std::string component = "all";           // see choose_pieces (pieces.h)
-  std::size_t fill_holes = 0;              // holes of up to so many edges are filled; 0 fills none
+  std::optional<std::size_t> fill_holes;   // holes of up to so many edges are filled
   bool flip_inward = false;                // turn closed components that face inward
   std::optional<double> weld;              // tolerance as a share of the diagonal
   // Survey the file instead of importing one clip: take all components in the bind pose and at

@@ -170,9 +170,9 @@ ChosenSurface choose_surface(const Character& character, const RawSurface& raw, 
   std::vector<Triangle>& triangles = surface.surface.triangles;
   if (triangles.empty()) throw InputError("no triangle has three corners of its own; repair the model");
 
-  if (options.fill_holes > 0) {
+  if (const std::size_t edges = options.fill_holes.value_or(0); edges > 0) {
     const FilledHoles filled =
-        fill_holes(TriangleMesh(triangles, raw.positions.size()), raw.positions, options.fill_holes);
+        fill_holes(TriangleMesh(triangles, raw.positions.size()), raw.positions, edges);
     triangles.insert(triangles.end(), filled.triangles.begin(), filled.triangles.end());
     surface.surface.source.resize(triangles.size(), ChosenSurface::kFilled);
     report.filled_holes = filled.holes;

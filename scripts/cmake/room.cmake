@@ -38,7 +38,7 @@ endfunction()
 # Rooms whose time is recorded: each file is compiled alone, so that no other file changes what the compiler makes of it.
 set(CSCD_ROOMS_FILE_BY_FILE "^(core|library|baselines)(/|$)|^bench/measure/(strategies|kernels)$")
 # Rooms that run once for each command or file. Optimising these takes longer than it saves.
-set(CSCD_BRIEF_ROOMS "^bench/(tables|compare|benchmark|statistics|records|inputs|command_line)(/|$)|^bench/(cli|query|measure)$|^bench/(cli/interface|query/view|answer/options|measure/studies|measure/shards)$|^scenes/(import|export|exchange|catalog)(/|$)")
+set(CSCD_BRIEF_ROOMS "^bench/(tables|compare|benchmark|statistics|records|inputs|command_line)(/|$)|^bench/(cli|query|measure)$|^bench/(cli/interface|query/view|measure/studies|measure/shards)$|^scenes/(import|export|exchange|catalog)(/|$)")
 
 # A room is one folder: every x.cpp in it is the room's library, every x_test.cpp the room's test program.
 #

@@ -95,9 +95,8 @@ std::vector<RunShard> divide(Input& input, const Replay& replay, std::size_t sha
     for (std::vector<std::size_t>* list : {&own.verified, &own.counted, &own.timed})
       *list = within(*list, range);
     if (own.counted.empty()) continue;
-    const ordered_json decisive = {content,     replay.command, replay.kind == ReplayKind::timings,
-                                   range.first, range.last,     own.verified,
-                                   own.counted, own.timed,      code};
+    const ordered_json decisive = {content,      replay.command, range.first, range.last,
+                                   own.verified, own.counted,    own.timed,   code};
     shard.file_name = scenes::digest(decisive.dump()) + ".json.gz";
     shards.push_back(std::move(shard));
   }
@@ -121,7 +120,7 @@ bool measure_shards(Input& input, std::span<const RunShard> shards, Worker worke
       continue;
     }
     Record record = execute(input, shard.replay);
-    if (shard.replay.kind == ReplayKind::timings) record.environment["process"] = process_number();
+    if (!shard.replay.request.counts) record.environment["process"] = process_number();
     ok = record.verification.ok() && ok;
     write_unless_there(path, gzipped(json_text(to_json(record))));
     const IntervalRange& range = shard.replay.range;

@@ -15,12 +15,4 @@ void add_answer_options(CLI::App& command, AnswerRequest& request, bool several_
 // a model file is read, matter to frames too.
 std::string given_answer_option(const CLI::App& command);
 
-// --ignore and --ignore-neighbours. `request` must live as long as the command.
-void add_ignore_options(CLI::App& command, IgnoreRequest& request);
-
-// --thickness, --exclude-rings and --exclude-near-rest. `request` must live as long as the command.
-void add_thickness_options(CLI::App& command, ThicknessRequest& request);
-// --thickness alone.
-void add_thickness_option(CLI::App& command, ThicknessRequest& request);
-
 }  // namespace cscd::bench

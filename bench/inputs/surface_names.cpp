@@ -1,4 +1,4 @@
-#include "bench/answer/surface_names.h"
+#include "bench/inputs/surface_names.h"
 
 #include <algorithm>
 #include <limits>
@@ -47,16 +47,6 @@ std::vector<std::string> part_names(const scenes::ImportReport& report) {
 }
 
 }  // namespace
-
-std::string meeting_text(const NamePair& both, const std::string& verb) {
-  return both.first + " " + verb + " " + (both.first == both.second ? "itself" : both.second);
-}
-
-std::string meeting_text(const NamePair& both, IntervalVerdict how) {
-  return meeting_text(both, how == IntervalVerdict::intersects_at_start ? "crosses"
-                            : how == IntervalVerdict::close             ? "comes close to"
-                                                                        : "touches");
-}
 
 SurfaceNames::SurfaceNames(const Input& input) : input_(input) {
   const TriangleMesh& mesh = input.mesh;

@@ -1,11 +1,11 @@
-#include "bench/answer/ignore.h"
+#include "bench/inputs/ignore.h"
 
 #include <algorithm>
 #include <fnmatch.h>
 #include <map>
 #include <set>
 
-#include "bench/answer/surface_names.h"
+#include "bench/inputs/surface_names.h"
 #include "core/base/error.h"
 #include "scenes/base/closest_name.h"
 
@@ -121,7 +121,7 @@ void ignore(Input& input, const IgnoreRequest& request) {
   for (std::size_t t = 0; t < input.mesh.triangle_count(); ++t)
     known.merge(names_of(input, names, TriangleId{static_cast<std::int32_t>(t)}));
   auto ignored = std::make_shared<Ignored>();
-  ignored->neighbours = request.neighbours;
+  ignored->asked = request;
   std::set<std::string> mentioned;
   for (const std::string& text : request.pairs) {
     ignored->names.push_back(cut(text, known));

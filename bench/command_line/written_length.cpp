@@ -1,4 +1,4 @@
-#include "bench/inputs/thickness_request.h"
+#include "bench/command_line/written_length.h"
 
 #include <charconv>
 #include <cmath>

@@ -7,17 +7,11 @@
 
 #include "bench/inputs/input.h"
 #include "core/detect/start/crossings.h"
-#include "core/session/interval_verdict.h"
 
 // What people call the places of a surface: names from the model file where there is one.
 namespace cscd::bench {
 
 using NamePair = std::pair<std::string, std::string>;
-
-// "hand_l touches hips", "tail crosses itself", "tail comes close to hand_l".
-std::string meeting_text(const NamePair& both, IntervalVerdict how);
-// "hand_l and hips", "tail and itself".
-std::string meeting_text(const NamePair& both, const std::string& verb);
 
 class SurfaceNames {
  public:
