@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "bench/answer/clip_answer.h"
+#include "bench/answer/test_figure.h"
 #include "bench/inputs/test_inputs.h"
 #include "bench/strategies/catalogue.h"
-#include "bench/testing/test_generated.h"
 #include "core/detect/start/embedding.h"
 #include "core/mesh/test_shapes.h"
 
@@ -103,15 +103,7 @@ TEST_P(Answers, OfACharacterAreRight) {
   for (const char* clip : {"0", "1"})
     for (const bool keep : {false, true})
       for (const bool first : {false, true}) {
-        ModelOptions options;
-        options.import.clip = clip;
-        options.import.fps = 12;
-        const std::string file = character_file("generated_figure.glb", scratch);
-        Input input = open_input(file, options);
-        if (!allows(input, strategy_named(GetParam()))) {
-          options.import.component = "auto";  // the closed body alone
-          input = open_input(file, options);
-        }
+        Input input = figure_for(strategy_named(GetParam()), clip, scratch);
         expect_right(input, strategy_named(GetParam()), {first, false, keep},
                      {0, input.clip->interval_count()}, verdicts);
       }

@@ -5,10 +5,10 @@
 #include <set>
 
 #include "bench/answer/answer.h"
+#include "bench/answer/test_figure.h"
 #include "bench/inputs/surface_names.h"
 #include "bench/inputs/test_inputs.h"
 #include "bench/strategies/catalogue.h"
-#include "bench/testing/test_generated.h"
 #include "core/base/test_refusal.h"
 #include "core/detect/start/crossings.h"
 #include "core/detect/start/embedding.h"
@@ -193,15 +193,7 @@ TEST_P(Ignoring, LeavesAllOtherContactsOfAClip) {
   Seen seen;
   for (const char* clip : {"0", "1"})
     for (const int joints : {1, 4}) {
-      ModelOptions options;
-      options.import.clip = clip;
-      options.import.fps = 12;
-      const std::string file = character_file("generated_figure.glb", scratch);
-      Input input = open_input(file, options);
-      if (!allows(input, strategy_named(GetParam()))) {
-        options.import.component = "auto";  // the closed body alone
-        input = open_input(file, options);
-      }
+      Input input = figure_for(strategy_named(GetParam()), clip, scratch);
       const IgnoreRequest request{{}, joints};
       for (const bool first : {false, true})
         expect_right(input, request, strategy_named(GetParam()), {.first = first}, seen);

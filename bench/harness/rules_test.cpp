@@ -6,6 +6,7 @@
 
 #include "bench/strategies/verify.h"
 #include "bench/testing/rule_case.h"
+#include "core/detect/test_list_culler.h"
 #include "core/elementary/question/relative_box.h"
 #include "core/geometry/kdop.h"
 #include "scenes/random/random_interval.h"
@@ -205,19 +206,6 @@ Case fingertip_on_face() {
   return Case(shape, shifted(shape.positions, 0, 4, {0, 0, -0.7}), kFarBelow);
 }
 
-class OnePair : public Culler {
- public:
-  explicit OnePair(TrianglePair pair) : pair_(pair) {}
-  void refit(const Step&) override {}
-  CullCounts cull(TrianglePairSink& sink) override {
-    sink.add(pair_.a, pair_.b);
-    return {};
-  }
-
- private:
-  TrianglePair pair_;
-};
-
 // Mutation: compose::expand meets only the features that have their triangle as the first one at them.
 TEST(Rules, AnyCarrierAnyTrianglePairThatCarriesAFeaturePairHasItTested) {
   for (const Case& scene : {colliding_silhouettes(), fingertip_on_face()}) {
@@ -233,7 +221,8 @@ TEST(Rules, AnyCarrierAnyTrianglePairThatCarriesAFeaturePairHasItTested) {
           edges ? around(contact.pair.b, true) : std::span<const TriangleId>(&face, 1);
       for (const TriangleId a : around(contact.pair.a, edges))
         for (const TriangleId b : other) {
-          const auto detector = compose(std::make_unique<OnePair>(TrianglePair{a, b}), scene.setup());
+          const auto detector =
+              compose(std::make_unique<test::ListCuller>(std::vector{TrianglePair{a, b}}), scene.setup());
           EXPECT_TRUE(holds(scene.ask(*detector), contact.pair));
         }
     }

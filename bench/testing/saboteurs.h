@@ -15,12 +15,10 @@
 #include "baselines/mcd/contour.h"
 #include "baselines/mcd/discs.h"
 #include "baselines/mcd/normal_cones.h"
+#include "baselines/rvbc_culler.h"
 #include "core/detect/compose.h"
 #include "core/hierarchy/overlap_descent.h"
-#include "core/radial/bone_observer.h"
-#include "core/radial/cluster_hierarchy.h"
 #include "core/radial/nearest_point.h"
-#include "core/radial/orientation.h"
 #include "core/radial/segmentation.h"
 #include "core/radial/setup.h"
 
@@ -139,40 +137,25 @@ class ConeCuller : public DescentCuller {
   std::optional<Motion> motion_;
 };
 
-// Clusters by bone, viewed from their bones; `merge_all` lets them all act as one (sound only as long as they
+// The culler of rvbc with spoilt classes, or with clusters that all act as one (sound only as long as they
 // share one observer: Flaw::observers_mixed).
 template <Flaw flaw>
-class RadialCuller : public Culler {
+class RadialCuller : public RvbcCuller {
  public:
   RadialCuller(const StrategyInput& setup, radial::AtomicClusters clusters,
                std::vector<radial::ObserverKind> kinds)
-      : mesh_(setup.mesh),
-        clusters_(std::move(clusters)),
-        kinds_(std::move(kinds)),
-        hierarchy_(mesh_, setup.reference, clusters_),
-        table_(mesh_, hierarchy_.groups()),
-        labels_(clusters_.clusters.size(), 0) {
-    if (flaw != Flaw::observers_mixed) std::iota(labels_.begin(), labels_.end(), 0);
+      : RvbcCuller(setup, std::move(clusters), std::move(kinds)), mesh_(setup.mesh) {
+    if (flaw == Flaw::observers_mixed) std::ranges::fill(unmerged_, 0);
   }
-  void refit(const Step& step) override { hierarchy_.refit(step.motion); }
   bool classify(const Step& step) override {
-    table_.update(step.motion);
+    RvbcCuller::classify(step);
     for (std::size_t c = 0; c < kinds_.size(); ++c) {
-      const std::size_t bone = +clusters_.clusters[c].bone;
-      const radial::Observer observer =
-          radial::observer(kinds_[c], step.bones->start[bone], step.bones->end[bone]);
       const std::span<radial::Orientation> classes = hierarchy_.classes(c);
-      table_.classify(c, observer, classes);
       for (std::size_t member = 0; member < classes.size(); ++member)
-        spoil(classes[member], step.motion, hierarchy_.groups()[c][member], observer);
+        spoil(classes[member], step.motion, hierarchy_.groups()[c][member], observers_[c]);
     }
     radial_ = hierarchy_.finish_classes();
     return true;
-  }
-  CullCounts cull(TrianglePairSink& sink) override {
-    CullCounts counts = hierarchy_.cull(labels_, sink);
-    counts.radial = radial_;
-    return counts;
   }
 
  private:
@@ -192,12 +175,6 @@ class RadialCuller : public Culler {
   }
 
   const TriangleMesh& mesh_;
-  radial::AtomicClusters clusters_;
-  std::vector<radial::ObserverKind> kinds_;
-  radial::ClusterHierarchy hierarchy_;
-  radial::OrientationTable table_;
-  std::vector<std::int32_t> labels_;
-  RadialCounts radial_;
 };
 
 // Many covers, each of one cluster a component that is seen from a vertex or a point between two; a pair is

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/detect/test_feature_pairs.h"
+#include "core/detect/test_list_culler.h"
 #include "core/elementary/catalogue.h"
 #include "core/elementary/exact/exact.h"
 #include "core/elementary/question/filter.h"
@@ -15,34 +16,11 @@
 namespace cscd {
 namespace {
 
-// Passes on a fixed list of triangle pairs.
-class ListCuller : public Culler {
- public:
-  explicit ListCuller(std::vector<TrianglePair> pairs, bool classifies = false)
-      : pairs_(std::move(pairs)), classifies_(classifies) {}
-  void refit(const Step&) override {}
-  bool classify(const Step&) override { return classifies_; }
-  CullCounts cull(TrianglePairSink& sink) override {
-    for (const TrianglePair& pair : pairs_) sink.add(pair.a, pair.b);
-    return {};
-  }
-  RadialView radial_view() const override { return {{7}, {true}}; }
-
- private:
-  std::vector<TrianglePair> pairs_;
-  bool classifies_;
-};
+using test::all_pairs;
+using test::ListCuller;
 
 TrianglePair pair_of(std::int32_t a, std::int32_t b) {
   return {TriangleId{a}, TriangleId{b}};
-}
-
-std::vector<TrianglePair> all_pairs(const TriangleMesh& mesh) {
-  std::vector<TrianglePair> pairs;
-  const auto count = static_cast<std::int32_t>(mesh.triangle_count());
-  for (std::int32_t a = 0; a < count; ++a)
-    for (std::int32_t b = a + 1; b < count; ++b) pairs.push_back(pair_of(a, b));
-  return pairs;
 }
 
 // An elementary test that counts how often it is asked about each query. It tells

@@ -3,25 +3,12 @@
 
 #include "core/detect/compose.h"
 #include "core/detect/filter_block.h"
+#include "core/detect/test_list_culler.h"
 #include "core/elementary/catalogue.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {
 namespace {
-
-class AllPairs : public Culler {
- public:
-  explicit AllPairs(std::size_t triangles) : count_(static_cast<std::int32_t>(triangles)) {}
-  void refit(const Step&) override {}
-  CullCounts cull(TrianglePairSink& sink) override {
-    for (std::int32_t a = 0; a < count_; ++a)
-      for (std::int32_t b = a + 1; b < count_; ++b) sink.add(TriangleId{a}, TriangleId{b});
-    return {};
-  }
-
- private:
-  std::int32_t count_;
-};
 
 // Two noisy balls that run into each other, or two boxes whose features touch by the dozen at one
 // instant, sometimes at the start.
@@ -75,7 +62,7 @@ TEST(FirstOnly, NothingTouchesBeforeTheBoundAndTheBoundIsOfUse) {
     std::size_t useful = 0, never = 0, asked = 0;
     for (unsigned seed = 0; seed < 24; ++seed) {
       const Crash crash(seed, size);
-      const auto detector = compose(std::make_unique<AllPairs>(crash.mesh.triangle_count()),
+      const auto detector = compose(std::make_unique<test::ListCuller>(test::all_pairs(crash.mesh)),
                                     StrategyInput{crash.mesh, {}, nullptr, exact});
       for (const Contact& contact : sorted_answer(*detector, crash).contacts)
         for (const TrianglePair& pair : carriers(crash.mesh, contact.pair)) {
@@ -106,7 +93,7 @@ TEST(FirstOnly, ReportsTheContactsOfTheEarliestTimeForFewerTests) {
     const auto make = [&](bool first_only) {
       const StrategyInput setup{
           .mesh = crash.mesh, .reference = {}, .rig = nullptr, .elementary = exact, .first_only = first_only};
-      return compose(std::make_unique<AllPairs>(crash.mesh.triangle_count()), setup);
+      return compose(std::make_unique<test::ListCuller>(test::all_pairs(crash.mesh)), setup);
     };
     const auto all = make(false), first = make(true);
     ContactSet expected = sorted_answer(*all, crash, &tests_for_all);

@@ -1,0 +1,96 @@
+#include "bench/answer/answer_text.h"
+
+#include <gtest/gtest.h>
+
+#include "bench/answer/clip_answerer.h"
+#include "bench/inputs/test_inputs.h"
+
+namespace cscd::bench {
+namespace {
+
+struct Said {
+  std::string sentence, text;
+  DepthCheck depth;  // at most 0.1 deep
+};
+
+Said said(Input input, const AnswerRequest& request = {}) {
+  ClipAnswerer asked(request, std::move(input));
+  asked.answer_all("test", false, [](const AnsweredPose&) {});
+  const ClipAnswer& answer = asked.answers().front();
+  return {verdict_sentence(answer), clip_text(answer), check_depth(answer, {.text = "0.1", .number = 0.1})};
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+Input one_pose(double shift) {
+  Input input = two_balls({shift, shift});
+  input.is_one_pose = true;
+  return input;
+}
+
+// Mutation: a clip of which only what is left out touches is said not to touch itself.
+TEST(AnswerText, SaysWhatAClipDoesAndWhen) {
+  EXPECT_EQ(said(two_balls({0, 0.5})).sentence, "test does not touch itself in frames 0 to 1.");
+  EXPECT_EQ(said(two_balls({0, 0})).sentence,
+            "test does not move in frames 0 to 1, and does not touch itself.");
+  EXPECT_EQ(
+      said(two_balls({0, -1.2, 0})).sentence,
+      "test crosses itself at the start of 1 of 2 intervals and touches itself in 1 more, first at frame "
+      "0.9: component 0 touches component 1.");
+  EXPECT_EQ(
+      said(two_balls({-1.2, -1.3, 0})).sentence,
+      "test touches itself in frames 0 to 2 only in what crosses at rest, which comes to lie deeper than "
+      "there.");
+  AnswerRequest kept;
+  kept.answers.keep_rest_crossings = true;
+  EXPECT_EQ(said(two_balls({-1.2, -1.3, 0}), kept).sentence,
+            "test crosses itself at the start of 2 of 2 intervals, first at frame 0: component 0 crosses "
+            "component 1.");
+}
+
+// Mutation: what comes close is said to touch.
+TEST(AnswerText, SaysHowNearThingsCome) {
+  AnswerRequest thick;
+  thick.thickness = {.thickness = parse_length("--thickness", "0.5"), .rings = 3};
+  EXPECT_EQ(said(two_balls({0, 0.5}), thick).sentence,
+            "test does not come within 0.5 of itself in frames 0 to 1.");
+  const Said close = said(two_balls({0, -0.8, 0}), thick);
+  EXPECT_EQ(
+      close.sentence,
+      "test comes within 0.5 of itself in 2 of 2 intervals, first at frame 0.68: component 0 comes close "
+      "to component 1.");
+  EXPECT_TRUE(has(close.text, "2 intervals: 0 clear, 2 close, 0 touch, 0 cross at their start"))
+      << close.text;
+  EXPECT_TRUE(has(close.text, "left out (--exclude-rings 3), and 0 others are this close at rest"))
+      << close.text;
+  EXPECT_EQ(
+      said(two_balls({0, -1.2}), thick).sentence,
+      "test touches itself in 1 of 1 interval, first at frame 0.46: component 0 comes close to component "
+      "1.");
+}
+
+// Mutation: the pose is called an interval.
+TEST(AnswerText, SaysWhatOnePoseIs) {
+  EXPECT_EQ(said(one_pose(0)).sentence, "test does not touch itself in its one pose.");
+  EXPECT_EQ(said(one_pose(-1.2)).sentence,
+            "test crosses itself in its one pose: 12 pairs of triangles, component 0 crosses component 1.");
+}
+
+// Mutation: the last pose is not looked at.
+TEST(AnswerText, SaysWhatCrossesAtTheEndAndHowDeep) {
+  const Said ends = said(two_balls({0, -1.2}));
+  EXPECT_TRUE(has(ends.text, "\n  ends crossed: 12 pairs of triangles cross in its last pose, frame 1\n"))
+      << ends.text;
+  EXPECT_FALSE(has(said(two_balls({0, -1.2, 0})).text, "ends crossed"));
+  EXPECT_TRUE(ends.depth.fails);
+  EXPECT_TRUE(has(ends.depth.text, "--fail-deeper-than 0.1: fails, because something lies deeper: 0.1"))
+      << ends.depth.text;
+  const Said clear = said(two_balls({0, 0.5}));
+  EXPECT_FALSE(clear.depth.fails);
+  EXPECT_EQ(clear.depth.text, "--fail-deeper-than 0.1: passes: nothing is known to lie deeper");
+}
+
+}  // namespace
+}  // namespace cscd::bench
