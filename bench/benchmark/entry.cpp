@@ -38,13 +38,17 @@ Input input_of(const scenes::PosedMesh& posed) {
 class Asked {
  public:
   Asked(const scenes::PosedMesh& posed, const StrategyRow& row, const ElementaryTest& elementary)
-      : row_(row), elementary_(elementary), input_(input_of(posed)) {
+      : row_(row), input_(input_of(posed)) {
     // One reason for all surfaces that are not closed; why_not() names the defect of each.
     if (row.strategy->needs != Needs::any_mesh && !input_.mesh.closed_and_oriented())
       throw InputError("needs a closed, consistently oriented surface");
     if (const auto reason = why_not(*row.strategy, input_.mesh, input_.rig.has_value()))
       throw InputError(*reason);
     contestants_.push_back(make_contestant(input_, row, judging(), elementary));
+    // Intervals of a mesh do not follow each other, so none leads up to another.
+    const std::vector<IntervalRange> alone(input_.clip->interval_count(), IntervalRange{0, 0});
+    measurement_.emplace(Measurement::Setup{input_, contestants_, judging(), elementary, alone,
+                                            [this](std::size_t) { return id_; }});
     // These promises need to know the start, and these strategies do not see it themselves.
     if (needs_embedded_start(row.strategy->guarantee))
       embedding_ = std::make_unique<EmbeddingTest>(
@@ -54,13 +58,9 @@ class Asked {
   IntervalAnswers answer(std::size_t row, const std::string& id, std::size_t repetitions,
                          std::vector<std::string>& failures) {
     IntervalAnswers out;
-    out.id = id;
-    // Intervals of a mesh do not follow each other, so none leads up to another.
-    const std::vector<IntervalRange> alone(input_.clip->interval_count(), IntervalRange{0, 0});
-    Measurement measurement(
-        {input_, contestants_, judging(), elementary_, alone, [&](std::size_t) { return id; }});
+    out.id = id_ = id;
     const SectionResult& result =
-        measurement.verify({{row}, {row}, {row}}, [&](std::size_t, std::size_t, const ContactSet& found) {
+        measurement_->count({{row}, {row}, {row}}, [&](std::size_t, std::size_t, const ContactSet& found) {
           out.contacts.emplace();
           for (const Contact& contact : found.contacts)
             out.contacts->push_back(
@@ -68,7 +68,7 @@ class Asked {
                  contact.verdict == Verdict::contact ? std::optional(contact.time) : std::nullopt});
         });
     std::mt19937_64 order;
-    measurement.time({repetitions, order});
+    measurement_->time({repetitions, order});
     const VerificationRecord& verified = result.verification;
     if (verified.ok()) {
       std::vector<double> times;
@@ -119,10 +119,11 @@ class Asked {
   }
 
   const StrategyRow& row_;
-  const ElementaryTest& elementary_;
   Input input_;
   std::vector<Contestant> contestants_;
   std::unique_ptr<EmbeddingTest> embedding_;
+  std::optional<Measurement> measurement_;
+  std::string id_;  // of the interval that is asked about
 };
 
 }  // namespace

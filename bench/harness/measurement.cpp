@@ -4,6 +4,7 @@
 #include <cstring>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 #ifdef __SSE2__
 #include <emmintrin.h>
 #endif
@@ -134,7 +135,7 @@ scenes::ClipInterval Measurement::lead_to(std::size_t interval, const StrategyRo
   return setup_.input.clip->load(interval);
 }
 
-SectionResult& Measurement::verify(Section section, const Visit& visit) {
+SectionResult& Measurement::count(Section section, const Visit& visit) {
   Input& input = setup_.input;
   const std::span<Contestant> contestants = setup_.contestants;
   SectionResult& out = results_.emplace_back();
@@ -180,7 +181,7 @@ SectionResult& Measurement::verify(Section section, const Visit& visit) {
     const bool differ = !agree(contestants, answers, starts_clear,
                                [&](std::size_t c) { return out.counted[c][place]->digest; });
     if (differ) out.verification.disagreeing.push_back(i);
-    if (is_verified || differ) first_time = judge(i, answers, out.verification);
+    if (is_verified || differ) first_time = verify(i, answers, out.verification);
     progress.advance();
   }
   return out;
@@ -189,8 +190,10 @@ SectionResult& Measurement::verify(Section section, const Visit& visit) {
 void Measurement::time(const Timing& timing) {
   Input& input = setup_.input;
   std::size_t intervals = 0;
-  std::vector<std::vector<std::size_t>> repeated;  // [results]: the contestants that are timed
-  for (SectionResult& result : results_) {
+  const std::size_t first = std::exchange(timed_results_, results_.size());
+  std::vector<std::vector<std::size_t>> repeated;  // [results - first]: the contestants that are timed
+  for (std::size_t r = first; r < results_.size(); ++r) {
+    const SectionResult& result = results_[r];
     intervals += result.section.timed.size();
     for (const std::size_t i : result.section.timed)
       if (!std::ranges::binary_search(result.section.counted, i))
@@ -202,8 +205,8 @@ void Measurement::time(const Timing& timing) {
   }
   Progress progress("timing " + input.name, timing.repetitions * intervals);
   for (std::size_t repetition = 0; repetition < timing.repetitions; ++repetition)
-    for (std::size_t r = 0; r < results_.size(); ++r) {
-      SectionResult& result = results_[r];
+    for (std::size_t r = 0; r < repeated.size(); ++r) {
+      SectionResult& result = results_[first + r];
       input.thickness.length = result.section.thickness;
       for (const std::size_t i : result.section.timed) {
         if (result.verification.ok()) time_queries(result, i, repetition, repeated[r], timing.random);
@@ -214,7 +217,8 @@ void Measurement::time(const Timing& timing) {
   // The tests of the starts come after all queries. Between two repetitions they would drive from the caches
   // what a strategy keeps, and the first query of the next repetition would pay for that.
   EmbeddingTest test = make_embedding_test(input.setup(elementary_test_named("exact")));
-  for (SectionResult& result : results_) {
+  for (std::size_t r = first; r < results_.size(); ++r) {
+    SectionResult& result = results_[r];
     if (!result.verification.ok()) continue;
     input.thickness.length = result.section.thickness;
     for (std::size_t repetition = 0; repetition < timing.repetitions; ++repetition)

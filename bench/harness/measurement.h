@@ -98,17 +98,17 @@ class Measurement {
   // time. The timed test may be to blame for that, so such intervals are judged with the exact one. The
   // counters of a judged interval have to be those of the timed one. `visit` sees every counted answer. The
   // result stays valid.
-  SectionResult& verify(Section section, const Visit& visit = {});
+  SectionResult& count(Section section, const Visit& visit = {});
 
-  // Times all sections that were verified and have no failures. Each timed interval is given to all
-  // contestants in turn, in a random order drawn anew every time, so that drift of the machine hits all
-  // alike. A section ends with a failure at the first contestant whose contacts or counters differ from those
-  // that were counted. Before each timed query all positions are streamed; how long that took is the column
-  // `streaming`. After all queries, the exact test whether the start is embedded is timed as often, where the
-  // timing asks for it. What it took is the stage `embedding` of the rows that rely on an embedded start. The
-  // stage `start` of the row that answers from starts that are not known is what its own exact test of the
-  // pairs that may cross there takes, beside its query. Throws InputError where an interval is to be timed
-  // that was not counted.
+  // Times the sections that were counted since the last call and have no failures. Each timed interval is
+  // given to all contestants in turn, in a random order drawn anew every time, so that drift of the machine
+  // hits all alike. A section ends with a failure at the first contestant whose contacts or counters differ
+  // from those that were counted. Before each timed query all positions are streamed; how long that took is
+  // the column `streaming`. After all queries, the exact test whether the start is embedded is timed as
+  // often, where the timing asks for it. What it took is the stage `embedding` of the rows that rely on an
+  // embedded start. The stage `start` of the row that answers from starts that are not known is what its own
+  // exact test of the pairs that may cross there takes, beside its query. Throws InputError where an interval
+  // is to be timed that was not counted.
   void time(const Timing& timing);
 
   // Whether an interval starts embedded, by a test that shares no culling with the timed one.
@@ -125,7 +125,7 @@ class Measurement {
   // and the timed test on the reference's pairs. The reference itself is held against truth from outside
   // where the input has some. `answers` are those with the timed test. Returns the time of the reference's
   // first contact.
-  std::optional<double> judge(std::size_t interval, const Answers& answers, VerificationRecord& record);
+  std::optional<double> verify(std::size_t interval, const Answers& answers, VerificationRecord& record);
   // Warms the detector up; the clip then holds the interval.
   scenes::ClipInterval lead_to(std::size_t interval, const StrategyRow& row, Detector& detector);
   void time_queries(SectionResult& result, std::size_t interval, std::size_t repetition,
@@ -142,7 +142,8 @@ class Measurement {
   EmbeddingTest embedding_;
   std::map<std::size_t, bool> embedded_;  // by interval
   std::deque<SectionResult> results_;
-  Answered timed_;  // the last timed answer, which keeps its memory
+  std::size_t timed_results_ = 0;  // of the first of them
+  Answered timed_;                 // the last timed answer, which keeps its memory
 };
 
 }  // namespace cscd::bench

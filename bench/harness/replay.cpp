@@ -183,7 +183,7 @@ Record execute(Input& input, const Replay& replay) {
   std::vector<Contestant> contestants =
       make_contestants(input, chosen_rows(input, replay.request.strategies, record.pipeline), exact, timed);
   Measurement measurement({input, contestants, exact, timed});
-  SectionResult& measured = measurement.verify(replay.section);
+  SectionResult& measured = measurement.count(replay.section);
   std::mt19937_64 random(record.seed);
   if (is_timed && measured.verification.ok()) {
     measurement.time({replay.request.repetitions, random, true});
@@ -196,8 +196,7 @@ Record execute(Input& input, const Replay& replay) {
     }
   }
   if (!measured.verification.ok())  // what was prepared is all that is left
-    for (StrategyRecord& row : measured.rows)
-      row.counts.clear(), row.digests.clear(), row.first_times.clear(), row.ms.clear();
+    std::ranges::for_each(measured.rows, leave_out_measurements);
   record.verification = std::move(measured.verification);
   record.strategies = std::move(measured.rows);
   if (replay.request.counts) leave_out_what_varies(record);

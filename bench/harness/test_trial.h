@@ -34,9 +34,9 @@ struct Trial {
         contestants(make_contestants(input, rows, exact, timed)),
         measurement({input, contestants, exact, timed}) {}
 
-  SectionResult& verify() { return measurement.verify({all, all, all}); }
+  SectionResult& verify() { return measurement.count({all, all, all}); }
   // Judges only where rows disagree.
-  SectionResult& count() { return measurement.verify({all, {}, all}); }
+  SectionResult& count() { return measurement.count({all, {}, all}); }
   void time(std::size_t repetitions) {
     std::mt19937_64 random(1);
     measurement.time({repetitions, random, true});

@@ -89,7 +89,7 @@ VerificationRecord Measurement::unjudged() const {
   return record;
 }
 
-std::optional<double> Measurement::judge(std::size_t i, const Answers& answers, VerificationRecord& record) {
+std::optional<double> Measurement::verify(std::size_t i, const Answers& answers, VerificationRecord& record) {
   const Stopwatch judging;
   Input& input = setup_.input;
   const std::span<Contestant> contestants = setup_.contestants;

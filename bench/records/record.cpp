@@ -31,6 +31,14 @@ const StrategyRecord* Record::strategy(std::string_view name) const {
   return row == strategies.end() ? nullptr : &*row;
 }
 
+void leave_out_measurements(StrategyRecord& strategy) {
+  strategy.footprint = {};
+  strategy.counts.clear();
+  strategy.digests.clear();
+  strategy.first_times.clear();
+  strategy.ms.clear();
+}
+
 void append_counts(const Report& report, const ContactSet& found, CountColumns& columns) {
   const nlohmann::json counts = counts_json(report);
   for (const auto& [key, value] : counts.items()) columns[key].push_back(value.get<std::uint64_t>());

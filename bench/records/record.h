@@ -139,6 +139,9 @@ struct Record {
   const StrategyRecord* strategy(std::string_view name) const;  // null when it was not run
 };
 
+// Leaves what was prepared alone, as where some strategy broke its promise.
+void leave_out_measurements(StrategyRecord& strategy);
+
 // Adds one interval's counters as one row.
 void append_counts(const Report& report, const ContactSet& found, CountColumns& columns);
 // Adds one interval's time, or all of its stages', to the last repetition.

@@ -130,15 +130,6 @@ void append(const VerificationRecord& more, VerificationRecord& to) {
   to.seconds += more.seconds;
 }
 
-// What is left of a strategy where some strategy broke its promise, as in a single run.
-void leave_out_measurements(StrategyRecord& strategy) {
-  strategy.footprint = {};
-  strategy.counts.clear();
-  strategy.digests.clear();
-  strategy.first_times.clear();
-  strategy.ms.clear();
-}
-
 }  // namespace
 
 Record join(const Replay& whole, std::span<const RunShard> shards, const fs::path& folder) {

@@ -49,7 +49,7 @@ class Study {
 
   void measure(std::mt19937_64& random) {
     for (std::size_t s = 0; s < subject_.steps.size(); ++s)
-      results_.push_back(&measurement_->verify(section(s)));
+      results_.push_back(&measurement_->count(section(s)));
     measurement_->time({.repetitions = subject_.repetitions, .random = random, .most_ms = kOnce});
   }
 
