@@ -17,10 +17,11 @@ AnswerOptions as_input_says(AnswerOptions options, const Input& input) {
 }
 
 // What a user is told who asked for more pairs than memory holds. `where` names the step.
-InputError too_many_pairs(const MemoryShortage& shortage, const std::string& where) {
-  return InputError(where + ": " + std::string(shortage.finding()) +
-                    "; give a smaller --thickness, leave neighbours out with --exclude-rings, ask for the "
-                    "earliest alone with --first, or allow a model file a larger --memory");
+InputError too_many_pairs(const MemoryShortage& shortage, const std::string& where, const Input& input) {
+  return InputError(
+      where + ": " + std::string(shortage.finding()) + "; give a smaller --thickness, leave " +
+      (input.thickness.left_out ? "more neighbours out" : "neighbours out with --exclude-rings") +
+      ", ask for the earliest alone with --first, or allow a model file a larger --memory");
 }
 
 }  // namespace
@@ -84,7 +85,9 @@ IntervalAnswer Answerer::answer(std::size_t index, const scenes::ClipInterval& i
     if (is_thick) tell_touching_from_close(interval.motion, answer);
     answer.wall_ms += telling.milliseconds();
   } catch (const MemoryShortage& shortage) {
-    throw too_many_pairs(shortage, "interval " + std::to_string(index));
+    const bool rests = interval.motion.start().data() == interval.motion.end().data();
+    throw too_many_pairs(shortage, (rests ? "the pose of frame " : "interval ") + std::to_string(index),
+                         input_);
   }
   answer.verdict = verdict_of(answer, is_thick);
   return answer;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "bench/answer/verdicts.h"
@@ -21,9 +20,7 @@ constexpr std::size_t kMostEvents = 10;
 
 // Frames of a long clip keep their hundredths.
 std::string frame_text(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.10g", std::round(100 * value) / 100);
-  return digits;
+  return exact_text(std::round(100 * value) / 100);
 }
 
 std::string moment_text(const Input& input, const ClipMoment& moment) {

@@ -17,12 +17,12 @@
 namespace cscd::bench {
 namespace {
 
-// The seconds that one interval of a model file may take, unless the user sets a limit. Scenes and point
+// The seconds that one interval of an imported file may take, unless the user sets a limit. Scenes and point
 // caches were made for this program and have no limit.
-constexpr double kModelIntervalSeconds = 60;
+constexpr double kImportedIntervalSeconds = 60;
 
 double patience_of(const AnswerRequest& request, const Input& input) {
-  return request.interval_seconds.value_or(input.import ? kModelIntervalSeconds : 0);
+  return request.interval_seconds.value_or(input.import ? kImportedIntervalSeconds : 0);
 }
 
 // The one pose of a file is asked about as it is, whatever is left out of motions.
@@ -120,7 +120,7 @@ void ClipAnswerer::keep_preparation() const {
                 path.c_str(), answerer.new_triangles(), input_.mesh.triangle_count());
 }
 
-void ClipAnswerer::answer_all(const std::string& task, bool with_ways,
+void ClipAnswerer::answer_all(const std::string& task, bool with_displacements,
                               const std::function<void(const AnsweredPose&)>& visit) {
   Progress progress(task, range_.last - range_.first);
   for (std::size_t i = range_.first; i < range_.last; ++i) {
@@ -135,7 +135,7 @@ void ClipAnswerer::answer_all(const std::string& task, bool with_ways,
       answer.load_ms = load_ms;
       if (s == 0) {
         here = events_->add(answer, interval.motion.start(),
-                            {.ways = with_ways, .pieces = request_.new_contacts});
+                            {.displacements = with_displacements, .pieces = request_.new_contacts});
         if (true_motion_) true_motion_->answer(interval.motion, answer);
       } else {
         share_start(input_, answers.front(), answer);
@@ -159,7 +159,8 @@ void ClipAnswerer::answer_all(const std::string& task, bool with_ways,
     last = answerers_.front().answer(range_.last, resting);
     last.found.contacts.clear();  // those of the pose are no contacts of an interval
     last.touching.clear();
-    here = events_->add(last, pose.positions, {.ways = with_ways, .pieces = request_.new_contacts});
+    here = events_->add(last, pose.positions,
+                        {.displacements = with_displacements, .pieces = request_.new_contacts});
     if (request_.new_contacts) keep_new(input_, here.pieces, last);
   }
   for (ClipAnswer& answer : answers_) {

@@ -45,8 +45,8 @@ class ClipAnswerer {
   std::span<const Vec3> true_positions_at(double seconds) { return true_motion_->positions_at(seconds); }
 
   // Answers all poses in order and hands each to `visit`. Progress is shown of `task`. With
-  // `with_ways`, each region holds the displacement out of the other piece for each of its vertices.
-  void answer_all(const std::string& task, bool with_ways,
+  // `with_displacements`, each region holds the displacement out of the other piece for each of its vertices.
+  void answer_all(const std::string& task, bool with_displacements,
                   const std::function<void(const AnsweredPose&)>& visit);
 
  private:

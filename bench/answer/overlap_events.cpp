@@ -191,7 +191,7 @@ OverlapEvents::Here OverlapEvents::add(IntervalAnswer& answer, std::span<const V
   const Crossings all = all_meetings(answer);
   not_measured_ += all.total > kMostPairs;
   if (all.total > answer.ignored_pairs.size() && all.total <= kMostPairs) {
-    here.overlaps = finder_.find(start, all.pairs, wanted.ways);
+    here.overlaps = finder_.find(start, all.pairs, wanted.displacements);
     tell_crossing_pieces(start, here.overlaps, answer);
     for (const Overlap& overlap : here.overlaps.overlaps) {
       here.event.push_back(kNone);

@@ -61,8 +61,8 @@ class OverlapEvents {
   };
   static constexpr std::size_t kNone = OverlapPieces::kNone;
   struct Wanted {
-    bool ways = false;    // of all vertices, in the regions
-    bool pieces = false;  // also where the answer has no contacts
+    bool displacements = false;  // of all vertices, in the regions
+    bool pieces = false;         // also where the answer has no contacts
   };
   // Writes into the answer to which event each contact belongs. Pairs that only touch, by triangles, count as
   // crossing from here on where their pieces cross.

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -22,17 +22,14 @@ constexpr bool collides(IntervalVerdict verdict) {
 // How many intervals, or clips, have each verdict.
 class VerdictCounts {
  public:
-  void add(IntervalVerdict verdict) { ++counts_[verdict], ++total_; }
-  std::size_t operator[](IntervalVerdict verdict) const {
-    const auto found = counts_.find(verdict);
-    return found == counts_.end() ? 0 : found->second;
-  }
+  void add(IntervalVerdict verdict) { ++counts_[static_cast<std::size_t>(verdict)], ++total_; }
+  std::size_t operator[](IntervalVerdict verdict) const { return counts_[static_cast<std::size_t>(verdict)]; }
   std::size_t total() const { return total_; }
   // The worst verdict of any interval: intersects_at_start, then touches, close, undecided and clear.
   IntervalVerdict worst() const;
 
  private:
-  std::map<IntervalVerdict, std::size_t> counts_;
+  std::array<std::size_t, 5> counts_{};  // [verdicts]
   std::size_t total_ = 0;
 };
 

@@ -167,13 +167,12 @@ void add_judge(CLI::App& benchmark) {
   command->add_option("--json", options->output, "where the whole score goes; - is standard output");
   command->add_flag("--force", options->force, "replace the output if it exists");
   command->callback([options] {
-    std::optional<OutputFile> output;
-    if (!options->output.empty()) output.emplace(options->output, options->force);
+    OutputFile output(options->output, options->force);
     const Benchmark judged = read_benchmark(options->folder);
     const Judgement judgement =
         judge(judged, read_answers(options->answers), "answers " + options->answers, options->time_tolerance);
     std::printf("%s", describe(judgement, options->families).c_str());
-    if (output) output->commit(json_text(to_json(judgement)));
+    output.commit(json_text(to_json(judgement)));
   });
 }
 

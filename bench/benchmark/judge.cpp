@@ -1,25 +1,19 @@
 #include "bench/benchmark/judge.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <numeric>
 #include <set>
 #include <variant>
 
 #include "bench/statistics/statistics.h"
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 
 namespace {
 
 constexpr std::size_t kListedFaults = 1000;
-
-std::string shown(double time) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", time);
-  return text;
-}
 
 // Compares one answer with the truth.
 class IntervalJudge {
@@ -77,12 +71,12 @@ class IntervalJudge {
       score_.latest = std::max(score_.latest, told - truth.hi);
       if (told - truth.hi <= tolerance_) return;
       ++score_.late;
-      tell("is late by " + shown(told - truth.hi) + " at " + what);
+      tell("is late by " + exact_text(told - truth.hi) + " at " + what);
     } else if (told < truth.lo) {
       score_.earliest = std::max(score_.earliest, truth.lo - told);
       if (truth.lo - told <= tolerance_) return;
       ++score_.early;
-      tell("is early by " + shown(truth.lo - told) + " at " + what);
+      tell("is early by " + exact_text(truth.lo - told) + " at " + what);
     }
   }
 
@@ -103,7 +97,7 @@ class IntervalJudge {
     score_.expected = truth_.contacts.size();
     for (const TrueContact& contact : truth_.contacts)
       if (!named_.contains(contact.pair))
-        miss(text(contact.pair) + ", which touches at " + shown(contact.time.lo));
+        miss(text(contact.pair) + ", which touches at " + exact_text(contact.time.lo));
   }
 
   // What a complete answer lists, whatever this one claims.
@@ -120,8 +114,8 @@ class IntervalJudge {
     if (answer_.first_time) {
       const std::optional<double> told = *answer_.first_time;
       if (told && first) look_at_time(*told, *first, "the first contact");
-      if (told && !first) invent("a first contact at " + shown(*told));
-      if (!told && first) miss("the first contact, at " + shown(first->lo));
+      if (told && !first) invent("a first contact at " + exact_text(*told));
+      if (!told && first) miss("the first contact, at " + exact_text(first->lo));
       return;
     }
     if (!first) return;
@@ -130,7 +124,8 @@ class IntervalJudge {
       const auto truth = times_.find(contact.pair);
       return truth != times_.end() && truth->second.lo <= first->hi;
     });
-    if (!there) miss("the first contact, " + text(truth_.contacts.front().pair) + " at " + shown(first->lo));
+    if (!there)
+      miss("the first contact, " + text(truth_.contacts.front().pair) + " at " + exact_text(first->lo));
   }
 
   void look_at_collides() {
@@ -219,12 +214,6 @@ class MeshCheck {
 
 using nlohmann::ordered_json;
 
-std::string brief(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 // A row for each number of a score: JSON, sums and columns follow from it.
 constexpr struct {
   const char* name;                                            // in JSON, and above its column
@@ -273,7 +262,7 @@ std::vector<std::string> cells(const std::string& name, const Score& score) {
                                   std::to_string(score.answered) + " of " + std::to_string(score.intervals)};
   const auto shown_as = [](const auto& value) {
     if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
-      return brief(value);
+      return figure_text(value);
     else
       return std::to_string(value);
   };
@@ -285,7 +274,7 @@ std::vector<std::string> cells(const std::string& name, const Score& score) {
                     : std::to_string(score.starts_wrong) + " of " + std::to_string(score.starts_told));
   const std::string mark(is_short(score.shortfall()) ? kShortfallMark : "");
   for (const auto statistic : {+[](const std::vector<double>& ms) { return median(ms); }, sum_of})
-    out.push_back(score.milliseconds.empty() ? "-" : brief(statistic(score.milliseconds)) + mark);
+    out.push_back(score.milliseconds.empty() ? "-" : figure_text(statistic(score.milliseconds)) + mark);
   return out;
 }
 
@@ -422,7 +411,7 @@ std::string describe(const Judgement& judgement, bool by_family) {
   std::string out =
       judgement.program + (judgement.version.empty() ? "" : " " + judgement.version) + "\n" + line(head);
   for (const auto& row : rows) out += line(row);
-  if (!marked.empty()) out += shortfall_meaning() + ".\n" + marked;
+  if (!marked.empty()) out += kShortfallMeaning + (".\n" + marked);
   constexpr std::size_t kShown = 10;
   for (std::size_t i = 0; i < std::min(kShown, judgement.faults.size()); ++i)
     out += judgement.faults[i].id + " " + judgement.faults[i].what + "\n";

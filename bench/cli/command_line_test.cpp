@@ -141,7 +141,7 @@ TEST_F(CommandLine, HasThePageOfSceneFiles) {
 
 // Whoever asks for help learns within ten lines what the command does and how it is called.
 TEST_F(CommandLine, SaysFirstWhatEachCommandDoes) {
-  std::istringstream commands(run("cscd help | sed -n '/^Subcommands:/,$s/^  \\([a-z]*\\) .*/\\1/p'").out);
+  std::istringstream commands(run("cscd help | sed -n '/^Subcommands:/,/^$/s/^  \\([a-z]*\\) .*/\\1/p'").out);
   std::size_t seen = 0;
   for (std::string command; std::getline(commands, command); ++seen) {
     const std::string head = run("cscd " + command + " --help | head -10").out;

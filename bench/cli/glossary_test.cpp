@@ -83,7 +83,7 @@ TEST_F(GlossaryProgram, ExplainsTheWordsOfHelp) {
                                    "refit",          "culling",
                                    "elementary test"};
   const Ran commands =
-      run("cscd --help | sed -n '/^Subcommands:/,$p' | sed -n 's/^  \\([a-z]\\+\\) .*/\\1/p'");
+      run("cscd --help | sed -n '/^Subcommands:/,/^$/p' | sed -n 's/^  \\([a-z]\\+\\) .*/\\1/p'");
   ASSERT_NE(commands.out.find("hardcases"), std::string::npos) << commands.out;
   std::stringstream names(commands.out);
   std::size_t used = 0;

@@ -38,8 +38,8 @@ class Interface : public Program {
     std::vector<std::string> names;
     bool listed = false;
     for (std::string line; std::getline(lines, line);) {
-      if (line == "Subcommands:")
-        listed = true;
+      if (line == "Subcommands:" || line.empty())
+        listed = !line.empty();
       else if (std::smatch found; listed && std::regex_search(line, found, std::regex("^  ([a-z]+) ")))
         names.push_back(found[1]);
     }

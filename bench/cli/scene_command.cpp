@@ -35,9 +35,8 @@ void add_scene(CLI::App& app) {
       "accept",
       "Write into a scene file what came of it: its counts, and the digest of its frames.\n\n"
       "  cscd scene accept my/scene.json\n\n"
-      "Look at the frames first (cscd export). From then on other frames than these are refused. The rest of "
-      "the\n"
-      "file stays as it is.");
+      "Look at the frames first (cscd export). From then on other frames than these are refused. The rest\n"
+      "of the file stays as it is.");
   accepting->add_option("file", *file, "a scene file, or the name of a scene")->required();
   accepting->callback([file] { accept(*file); });
 }

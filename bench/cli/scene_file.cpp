@@ -1,11 +1,11 @@
 #include "bench/cli/scene_file.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <initializer_list>
 #include <vector>
 
 #include "bench/output/markdown.h"
+#include "core/base/number_text.h"
 #include "scenes/catalog/scene.h"
 #include "scenes/catalog/shapes.h"
 #include "scenes/effects/effect.h"
@@ -17,9 +17,7 @@ using scenes::ParameterKind;
 using scenes::ParameterRow;
 
 std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.10g", value);
-  return text;
+  return rounded_text(value, 10);
 }
 
 std::string type(const ParameterRow& row) {

@@ -16,14 +16,12 @@ struct CompareOptions {
 };
 
 void compare_sides(const CompareOptions& options) {
-  std::optional<OutputFile> json, markdown;
-  if (!options.json.empty()) json.emplace(options.json, options.force);
-  if (!options.markdown.empty()) markdown.emplace(options.markdown, options.force, ".md");
+  OutputFile json(options.json, options.force), markdown(options.markdown, options.force, ".md");
   const Side before = read_side(options.before), after = read_side(options.after);
   const Comparison comparison =
       compare(before, after, options.lane == "counters" ? Lane::counters : Lane::all);
-  if (json) json->commit(json_text(comparison_json(comparison)));
-  if (markdown) markdown->commit(comparison_markdown(comparison));
+  json.commit(json_text(comparison_json(comparison)));
+  markdown.commit(comparison_markdown(comparison));
   std::fputs(comparison_text(comparison, options.show_all).c_str(), stdout);
   end_with(exit_status(comparison.verdict()));
 }
@@ -38,17 +36,14 @@ void add_compare(CLI::App& app) {
       "  cscd compare before after                   two folders of records\n"
       "  cscd compare old.json,old2.json new.json    several records of one program, with commas between\n"
       "  cscd compare before after --lane counters   truth, counters and memory; no times\n\n"
-      "The verdict goes by truth first, then counters, then memory, then times. Truth is verification, "
-      "digests of\n"
-      "contacts, first times, and what the elementary tests missed or invented. Counters are compared "
-      "exactly. A\n"
-      "time has changed only where the interval over processes excludes no change, the change passes the "
-      "floors, and\n"
-      "all pairings of layouts agree in its sign. Times need six processes a side, measured in turns, as\n"
-      "scripts/compare-commits does; each line says which change it could have seen. Where no verdict about "
-      "times is\n"
-      "possible, the times of both sides are shown all the same, with the reason.\n\n"
-      "Exit status: 0 nothing worse; 1 worse or less true; 2 something could not be compared, and the rest "
+      "The verdict goes by truth first, then counters, then memory, then times. Truth is verification,\n"
+      "digests of contacts, first times, and what the elementary tests missed or invented. Counters are\n"
+      "compared exactly. A time has changed only where its 95 % interval over processes excludes 0, the\n"
+      "change is larger than the smallest that is reported, and it has the same sign in all pairings, each\n"
+      "of a layout of the old program with one of the new. Times need six processes a side, measured in\n"
+      "turns, as scripts/compare-commits does; each line says which change it could have seen. Where no\n"
+      "verdict about times is possible, the times of both sides are shown all the same, with the reason.\n\n"
+      "Exit status: 0 nothing worse; 1 worse or less true; 2 something could not be compared, and the rest\n"
       "is not worse.");
   command->add_option("old", options->before, "records of the old program: files or folders, commas between")
       ->required();

@@ -57,7 +57,7 @@ TEST(Comparison, OfOtherScenesComparesNothing) {
       0u)
       << text;
   EXPECT_NE(text.find("truth: not compared\ncounters: not compared\n"), std::string::npos) << text;
-  EXPECT_EQ(text.find("the same"), std::string::npos) << text;
+  EXPECT_EQ(text.find(": the same"), std::string::npos) << text;
   ASSERT_EQ(none.unjudged_times.size(), 6u);
   EXPECT_EQ(none.unjudged_times[0].scene, "hand") << "of OLD";
   EXPECT_TRUE(none.unjudged_times[0].before_ms && !none.unjudged_times[0].after_ms);
@@ -78,7 +78,7 @@ TEST(Comparison, SaysInWhichSettingsOneSceneDiffers) {
       "with other settings: ";
   EXPECT_EQ(said([](Record& r) {
               r.thickness = 0.5, r.scene.name = "hand, thickness 1e";
-            }).find(start + "--thickness is 0.25 and 0.5\n"),
+            }).find(start + "--thickness is 0.5e (0.25) and 1e (0.5)\n"),
             0u);
   EXPECT_EQ(said([](Record& r) {
               r.pipeline = Pipeline::published;
@@ -86,7 +86,7 @@ TEST(Comparison, SaysInWhichSettingsOneSceneDiffers) {
             0u);
   EXPECT_EQ(said([](Record& r) {
               r.thickness = 0, r.scene.name = "hand";
-            }).find(start + "--thickness is 0.25 and left out\n"),
+            }).find(start + "--thickness is 0.5e (0.25) and left out\n"),
             0u);
   // The same length, in units.
   const std::string same = said([](Record& r) { r.scene.name = "hand, thickness 0.25"; });
@@ -104,6 +104,7 @@ TEST(Comparison, TakesSettingsThatAreSpeltOtherwiseForEqual) {
   EXPECT_EQ(settings({"--exclude-near-rest", "0.20e"}), settings({"--exclude-near-rest=2e-1e"}));
   EXPECT_EQ(settings({"--fps", "24"}), settings({"--fps", "24.0"}));
   EXPECT_EQ(settings({"--ignore", "hand:arm"}), settings({"--ignore", "arm:hand"}));
+  EXPECT_EQ(settings({"--ignore", "hand:arm"}), settings({"--ignore", "hand:arm", "--ignore", "arm:hand"}));
   EXPECT_NE(settings({"--fps", "24"}), settings({"--fps", "24e"}));
   EXPECT_NE(settings({"--ignore", "a:b:c"}), settings({"--ignore", "c:b:a"})) << "which colon is meant?";
 }

@@ -9,6 +9,7 @@
 #include "bench/output/markdown.h"
 #include "bench/records/shortfall.h"
 #include "core/base/number_text.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {
@@ -81,14 +82,6 @@ std::string footprint_line(const Comparison& c) {
   return c.compared_counts == 0 && c.footprint.empty() ? "not compared" : tally(c.footprint);
 }
 
-// "a, b, c and 9 more".
-std::string few(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 4;
-  std::string out;
-  for (std::size_t i = 0; i < std::min(kMost, names.size()); ++i) out += (i > 0 ? ", " : "") + names[i];
-  return names.size() <= kMost ? out : out + " and " + std::to_string(names.size() - kMost) + " more";
-}
-
 // Refusals for the same reason in one line each.
 std::vector<std::string> refusal_lines(const Comparison& c) {
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
@@ -100,7 +93,7 @@ std::vector<std::string> refusal_lines(const Comparison& c) {
   }
   std::vector<std::string> lines;
   for (const auto& [text, scenes] : groups)
-    lines.push_back((scenes.empty() ? "" : few(scenes) + ": ") + text);
+    lines.push_back((scenes.empty() ? "" : first_of(scenes, 4, "") + ": ") + text);
   return lines;
 }
 
@@ -333,9 +326,7 @@ std::string unjudged_text(const Comparison& c, bool all, std::size_t most) {
 std::string shortfall_line(const Comparison& c) {
   const bool marked = std::ranges::any_of(c.times, &TimeFinding::of_shortfall) ||
                       std::ranges::any_of(c.unjudged_times, &UnjudgedTime::of_shortfall);
-  return marked ? std::string(kShortfallMark) +
-                      " keeps fewer contacts than a complete row, or promises nothing on some intervals\n"
-                : "";
+  return marked ? std::string(kShortfallMeaning) + "\n" : "";
 }
 
 }  // namespace
@@ -364,7 +355,7 @@ std::string comparison_text(const Comparison& c, bool all) {
   if (all)
     for (const std::string& one : c.only_in_one) out += "not compared: " + one + "\n";
   else if (!c.only_in_one.empty())
-    out += "not compared: " + few(c.only_in_one) + "\n";
+    out += "not compared: " + first_of(c.only_in_one, 4, "") + "\n";
   return out + (all ? "" : "--all shows every finding, and every time scene by scene\n");
 }
 

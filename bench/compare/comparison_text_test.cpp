@@ -2,6 +2,7 @@
 #include <string>
 
 #include "bench/compare/comparison.h"
+#include "bench/records/shortfall.h"
 
 // What comparison_text() and comparison_markdown() say of findings; that these are found is in
 // comparison_test.cpp.
@@ -78,7 +79,7 @@ TEST(ComparisonText, ShowsTheGravestFindingsFirst) {
 TEST(ComparisonText, ShowsTimesWithTheirIntervals) {
   const std::string text = comparison_text(with_findings()), all = comparison_text(with_findings(), true);
   expect_in(text, "memory and instructions: 1 worse, 0 better\n");
-  expect_in(text, "held_bytes  1000  1250  +25.0 %  worse\n");
+  expect_in(text, "held_bytes  1,000  1,250  +25.0 %  worse\n");
   expect_in(text, "times: 1 worse, 0 better of 2 stages\n");
   expect_in(text,
             "  hand, base     total  2        2.5      +25.0 % [+20.0 %, +30.0 %]  5 %         2 %          "
@@ -89,7 +90,7 @@ TEST(ComparisonText, ShowsTimesWithTheirIntervals) {
       << "a time that did not change is shown on request";
   expect_in(all, "hand, mcd*");
   expect_in(all, "below the floor\n");
-  expect_in(all, "* keeps fewer contacts than a complete row");
+  expect_in(all, kShortfallMeaning);
   expect_in(text, "--all shows every finding");
 }
 

@@ -199,20 +199,15 @@ std::vector<ChangePoint> changes_of(const Course& course) {
 }
 
 std::string step_text(double ratio) {
-  char text[64];
-  if (ratio < 1)
-    std::snprintf(text, sizeof text, "%.3g times faster", 1 / ratio);
-  else
-    std::snprintf(text, sizeof text, "%.3g times slower", ratio);
-  return text;
+  return ratio < 1 ? figure_text(1 / ratio) + " times faster" : figure_text(ratio) + " times slower";
 }
 
 std::string point_text(const Course& course, std::size_t i) {
   const HistoryPoint& point = course.points[i];
   char text[128];
-  std::snprintf(text, sizeof text, "  %s  %.10s  %10.4g ms%-1s [%.4g, %.4g]",
-                point.committed.substr(0, 16).c_str(), point.commit.c_str(), point.ms.value,
-                mark_of(point).c_str(), point.ms.low, point.ms.high);
+  std::snprintf(text, sizeof text, "  %s  %.10s  %10s ms%-1s [%s, %s]", point.committed.substr(0, 16).c_str(),
+                point.commit.c_str(), short_text(point.ms.value).c_str(), mark_of(point).c_str(),
+                short_text(point.ms.low).c_str(), short_text(point.ms.high).c_str());
   std::string out = text;
   for (const ChangePoint& change : course.changes)
     if (change.first == i) out += "  <- " + step_text(change.ratio);
@@ -232,10 +227,7 @@ std::string note_on_marks(std::span<const HistoryPoint* const> points) {
     return std::ranges::any_of(points, [&](const HistoryPoint* point) { return mark_of(*point) == mark; });
   };
   std::string out;
-  if (has(std::string(kShortfallMark)))
-    out += std::string(kShortfallMark) +
-           " The row did not answer everything that a complete row answers, so its time is not for the same "
-           "work.\n";
+  if (has(std::string(kShortfallMark))) out += std::string(kShortfallMeaning) + ".\n";
   if (has(std::string(kUnknownMark)))
     out += std::string(kUnknownMark) + " The entry does not say whether the row answered everything.\n";
   return out;

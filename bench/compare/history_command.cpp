@@ -52,10 +52,10 @@ void add_history(CLI::App& app) {
       "  cscd history                                        the changes of every row of several commits\n"
       "  cscd history --scene hand --row drvbc_fast          every commit of this row\n"
       "  cscd history --keep FOLDER                          add an entry of the records in FOLDER\n\n"
-      "An entry is one small JSON file a commit and kind of machine, and is never rewritten. Changes of "
-      "level "
-      "are\n"
-      "found by penalised least squares on logarithms, exactly (optimal partitioning).");
+      "An entry is one small JSON file a commit and kind of machine, and is never rewritten. A change of\n"
+      "level is a commit from which on a row takes another time. Such commits are found exactly, as the\n"
+      "segments that fit the logarithms of the times best when each of them costs a fixed amount (optimal\n"
+      "partitioning).");
   command->add_option("folder", options->folder, "the folder of the entries")->capture_default_str();
   command->add_option("--machine", options->choice.machine, "of this kind of machine alone: a folder's name");
   command->add_option("--scene", options->choice.scene, "of this scene alone");

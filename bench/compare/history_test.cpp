@@ -128,10 +128,10 @@ TEST(History, MarksTimesOfRowsThatDidNotAnswerEverything) {
   EXPECT_EQ(mark(courses, "swift"), "*") << "it kept 2 of 3 contacts";
   std::string text = courses_text(courses, true, true);
   EXPECT_TRUE(says(text, " ms* [")) << text;
-  EXPECT_TRUE(says(text, "\n* The row did not answer everything")) << text;
+  EXPECT_TRUE(says(text, std::string("\n") + kShortfallMeaning)) << text;
   EXPECT_FALSE(says(text, "?")) << text;
   EXPECT_EQ(courses_json(courses)["courses"][0]["points"][0]["mark"], "");
-  EXPECT_TRUE(says(courses_json(courses)["note"], "* The row did not answer everything"));
+  EXPECT_TRUE(says(courses_json(courses)["note"], kShortfallMeaning));
 
   entry["schema"] = kFirstHistorySchema;
   for (ordered_json& row : entry["scenes"][0]["rows"]) row.erase("lacking");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -24,6 +25,7 @@ constexpr std::string_view kNoSettings[] = {"--scene",          "--input",      
                                             "--cell-intervals", "--import-memory", "--memory",
                                             "--import-seconds"};
 
+constexpr std::string_view kThickName = ", thickness ";  // between the name of a scene and the thickness
 // Members of a record say these better than its command line, which older records do not spell out.
 constexpr std::string_view kElementary = "--elementary", kPipeline = "--pipeline", kThickness = "--thickness";
 
@@ -48,7 +50,7 @@ std::string plainly(const std::string& value) {
 // The options of a command line that are settings. An option that is given several times, as --ignore, has
 // all its values in order, so that the order in which they were given makes no difference.
 Settings from_command(const std::vector<std::string>& words) {
-  std::map<std::string, std::multiset<std::string>> given;
+  std::map<std::string, std::set<std::string>> given;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (!is_option(words[i])) continue;
     const std::size_t equals = words[i].find('=');
@@ -63,6 +65,20 @@ Settings from_command(const std::vector<std::string>& words) {
   for (const auto& [option, values] : given)
     for (const std::string& value : values) out[option] += (out[option].empty() ? "" : " ") + value;
   return out;
+}
+
+// A setting of a record as it is shown: the thickness as it was written, with its length where that is
+// another number.
+std::string shown(const Record& record, const std::string& name) {
+  const Settings settings = settings_of(record);
+  const auto found = settings.find(name);
+  if (found == settings.end()) return "left out";
+  if (name != kThickness) return found->second;
+  const std::string& scene = record.scene.name;
+  const std::size_t at = scene.rfind(kThickName);
+  const std::string written = at == std::string::npos ? found->second : scene.substr(at + kThickName.size());
+  return plainly(written) == found->second ? found->second
+                                           : written + " (" + short_text(record.thickness) + ")";
 }
 
 }  // namespace
@@ -86,19 +102,18 @@ std::string other_settings(const Record& one, const Record& other) {
     for (const auto& [name, value] : *side) names.insert(name);
   const auto value_in = [](const Settings& settings, const std::string& name) {
     const auto found = settings.find(name);
-    return found == settings.end() ? std::string("left out") : found->second;
+    return found == settings.end() ? std::nullopt : std::optional(found->second);
   };
   std::string out;
   for (const std::string& name : names)
     if (value_in(first, name) != value_in(second, name))
-      out += (out.empty() ? "" : "; ") + name + " is " + value_in(first, name) + " and " +
-             value_in(second, name);
+      out += (out.empty() ? "" : "; ") + name + " is " + shown(one, name) + " and " + shown(other, name);
   return out;
 }
 
 std::string bare_name(const Record& record) {
   const std::string& name = record.scene.name;
-  return record.thickness > 0 ? name.substr(0, name.rfind(", thickness ")) : name;
+  return record.thickness > 0 ? name.substr(0, name.rfind(kThickName)) : name;
 }
 
 bool asks_the_same(const Record& one, const Record& other) {

@@ -75,10 +75,10 @@ void compare_accuracy(const Record& before, const Record& after, Findings& out) 
   if (before.elementary == after.elementary && old_v.reference == new_v.reference) {
     const auto compare = [&](const char* what, double old_value, double new_value) {
       if (old_value == new_value) return;
-      char text[160];
-      std::snprintf(text, sizeof text, "elementary test %s: %s %.17g, in OLD %.17g", after.elementary.c_str(),
-                    what, new_value, old_value);
-      out.push_back({scene, "", text, new_value > old_value});
+      out.push_back({scene, "",
+                     "elementary test " + after.elementary + ": " + what + " " + exact_text(new_value) +
+                         ", in OLD " + exact_text(old_value),
+                     new_value > old_value});
     };
     const Accuracy &a = old_v.accuracy, &b = new_v.accuracy;
     compare("contacts missed", static_cast<double>(a.misses), static_cast<double>(b.misses));

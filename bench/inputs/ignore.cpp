@@ -8,6 +8,7 @@
 #include "bench/inputs/surface_names.h"
 #include "core/base/error.h"
 #include "scenes/base/closest_name.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {
@@ -37,13 +38,7 @@ std::set<std::string> names_of(const Input& input, const SurfaceNames& names, Tr
                          const std::set<std::string>& known) {
   const std::vector<std::string_view> views(known.begin(), known.end());
   std::string hint = did_you_mean(unknown, views);
-  if (hint.empty()) {
-    constexpr std::size_t kListed = 12;
-    hint = "; there are ";
-    for (std::size_t i = 0; i < std::min(kListed, views.size()); ++i)
-      hint += (i > 0 ? ", '" : "'") + std::string(views[i]) + "'";
-    if (views.size() > kListed) hint += " and " + std::to_string(views.size() - kListed) + " more";
-  }
+  if (hint.empty()) hint = "; there are " + first_of(views, 12);
   throw InputError("--ignore " + text + ": no bone, part or mesh is called '" + unknown + "'" + hint);
 }
 

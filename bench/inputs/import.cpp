@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -108,9 +107,7 @@ std::string read_report(const fs::path& path) {
 }
 
 std::string number(double value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.6g", value);
-  return digits;
+  return rounded_text(value, 6);
 }
 
 // "1st", "2nd", "11th".

@@ -12,6 +12,7 @@
 #include "bench/strategies/catalogue.h"
 #include "bench/strategies/strategy_row.h"
 #include "core/base/error.h"
+#include "core/base/memory.h"
 #include "core/base/number_text.h"
 #include "scenes/catalog/scene_cache.h"
 #include "scenes/clip/point_cache.h"
@@ -160,6 +161,9 @@ Input open_input(const std::string& name, const ModelOptions& options) {
 void name_input(const std::string& name, const std::function<void()>& work) {
   try {
     work();
+  } catch (const MemoryShortage& shortage) {
+    throw InputError(name + ": " + std::string(shortage.finding()) +
+                     "; give a smaller --thickness or a smaller input");
   } catch (const InputError& error) {
     const std::string what = error.what();
     if (what.find(name) != std::string::npos) throw;

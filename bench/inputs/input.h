@@ -10,12 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "bench/command_line/written_length.h"
 #include "bench/inputs/import.h"
 #include "bench/inputs/outside_truth.h"
-#include "bench/inputs/thickness_request.h"
 #include "core/detect/exclusions.h"
 #include "core/detect/step.h"
 #include "core/detect/strategy.h"
+#include "core/detect/thickness.h"
 #include "core/mesh/rig.h"
 #include "core/mesh/triangle_mesh.h"
 #include "scenes/clip/clip.h"
@@ -35,6 +36,26 @@ struct Ignored {
   IgnoreRequest asked;
   std::vector<std::pair<std::string, std::string>> names;  // the pairs that are asked, cut in two
   Exclusions triangles;                                    // the pairs of triangles that all this comes to
+};
+
+// How near features may come before they count, and which pairs are left out because they are near by
+// construction: as a user asks for it.
+struct ThicknessRequest {
+  WrittenLength thickness = {};
+  std::optional<int> rings = {};  // vertices that at most so many edges join do not collide
+  WrittenLength near_rest = {};   // nor do vertices that are nearer than this at rest
+
+  bool leaves_out() const { return rings.value_or(0) > 0 || near_rest.number > 0; }
+};
+
+// The same for one input.
+struct InputThickness {
+  ThicknessRequest asked = {};
+  double edge = 0;                                       // mean length of an edge at rest
+  double length = 0;                                     // of the thickness; 0 where touching alone counts
+  std::shared_ptr<const Exclusions> left_out = nullptr;  // null where nothing is
+
+  Thickness thickness() const { return Thickness(length); }
 };
 
 // Which axis of an input points up, for whoever looks at it. No answer depends on it.
@@ -90,7 +111,8 @@ struct Input {
 // files only.
 Input open_input(const std::string& name_or_path, const ModelOptions& options = {});
 
-// Calls `work`, which is about an input, and lets its InputErrors begin with that input's name.
+// Calls `work`, which is about an input, and lets its InputErrors begin with that input's name. Want of
+// memory becomes such an error.
 void name_input(const std::string& name, const std::function<void()>& work);
 
 // Says what was made of a model file, a few lines, and which of its clips this is; nothing of other inputs.

@@ -18,8 +18,9 @@ std::span<const OptionRow<scenes::ImportOptions>> import_options() {
       {"--fill-holes", &I::fill_holes, "fill holes of up to so many edges; default none", {{0, 10'000}}},
       {"--flip-inward", &I::flip_inward, "turn closed components that face inward"},
       {"--weld", &I::weld,
-       "vertices nearer than this share of the diagonal are one; default 1e-6, or less where detail "
-       "would collapse"}};
+       "vertices that are nearer to each other than this share of the diagonal of the model's box become "
+       "one;\n"
+       "default 1e-6, or less where detail would collapse"}};
   return rows;
 }
 

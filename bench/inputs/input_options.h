@@ -1,9 +1,11 @@
 #pragma once
 
-#include <CLI/App.hpp>
-
 #include "bench/command_line/option_rows.h"
 #include "bench/inputs/input.h"
+
+namespace CLI {
+class App;
+}
 
 // The options that say which input, and how it is taken. Owners must live as long as the command that the
 // options are added to.

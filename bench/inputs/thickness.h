@@ -3,7 +3,6 @@
 #include <string>
 
 #include "bench/inputs/input.h"
-#include "bench/inputs/thickness_request.h"
 #include "core/detect/strategy.h"
 
 namespace cscd::bench {

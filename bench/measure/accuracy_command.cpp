@@ -65,7 +65,10 @@ std::span<const OptionRow<AccuracyOptions>> accuracy_options() {
       {"--hard-queries", &A::hard_queries, "of each family and kind"},
       {"--close-queries", &A::close_queries, "of each family at a distance and kind"},
       {"--random-queries", &A::random_queries, "of each family, kind and hardness"},
-      {"--hardness", &A::hardnesses, "shares of a query's size by which it is off its lattice", {{1e-18, 1}}},
+      {"--hardness",
+       &A::hardnesses,
+       "how far the points of random queries are moved off a lattice, as shares of a query's size",
+       {{1e-18, 1}}},
       {"--passes", &A::passes, "how often every test is asked the same block", {{1, 1000}}},
       {"--seed", &A::seed, "of the queries and of the order of the tests"}};
   return rows;
@@ -276,8 +279,7 @@ class Study {
 void run_accuracy(AccuracyOptions options) {
   choose_size(options);
   Study study(options);
-  std::optional<OutputFile> output;
-  if (!options.output.empty()) output.emplace(options.output, options.force);
+  OutputFile output(options.output, options.force);
   std::vector<Workload> workloads = hard_workloads(options.hard_queries, options.seed);
   const auto append = [&](std::vector<Workload> more) {
     for (Workload& workload : more) workloads.push_back(std::move(workload));
@@ -297,7 +299,7 @@ void run_accuracy(AccuracyOptions options) {
   const ordered_json record = study.json();
   if (const std::string violation = schema_violation(record, "accuracy.schema.json"); !violation.empty())
     throw std::logic_error("the record does not follow its schema: " + violation);
-  if (output) output->commit(json_text(record));
+  output.commit(json_text(record));
   study.print();
   if (!study.kept()) end_with(ExitStatus::failed);
 }
@@ -306,19 +308,17 @@ void run_accuracy(AccuracyOptions options) {
 
 void add_accuracy(CLI::App& app) {
   auto options = std::make_shared<AccuracyOptions>();
-  CLI::App* command =
-      app.add_subcommand("accuracy",
-                         "Measure what elementary tests get wrong and what they cost, on the "
-                         "same queries, against the oracle.\n\n"
-                         "  cscd accuracy --smoke\n"
-                         "  cscd accuracy --scene rope_contact --set QUERIES --sweep "
-                         "cubic@1e-3,cubic@1e-9 --json record.json\n\n"
-                         "Asks the hard families (cscd list families), the same at every "
-                         "hardness, families of queries at a\n"
-                         "distance (of the tests that know distances), the open query set where "
-                         "it is\nnamed, and the pairs of scenes that get past bounds and filter. "
-                         "Exit status 1 where a test is wrong in\n"
-                         "what it proves, or the oracle contradicts a published truth.");
+  CLI::App* command = app.add_subcommand(
+      "accuracy",
+      "Measure what elementary tests get wrong and what they cost, on the same queries, against the "
+      "oracle.\n\n"
+      "  cscd accuracy --smoke\n"
+      "  cscd accuracy --scene rope_contact --set QUERIES --sweep cubic@1e-3,cubic@1e-9 --json "
+      "record.json\n\n"
+      "Asks the hard families (cscd list families), the same at every hardness, families of queries at a\n"
+      "distance (of the tests that know distances), the open query set where it is named, and the pairs of\n"
+      "scenes that get past bounds and filter. Exit status 1 where a test is wrong in what it proves, or\n"
+      "the oracle contradicts a published truth.");
   add_options(*command, accuracy_options(), *options);
   command->add_flag("--smoke", options->smoke, "seconds instead of minutes; times mean nothing");
   command->add_option("--json", options->output, "where the record goes");

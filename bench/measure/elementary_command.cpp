@@ -92,8 +92,7 @@ void run_elementary(const ElementaryOptions& options) {
   std::vector<Outcome> outcomes;
   for (const ElementaryTest* test : elementary_tests_named(options.elementary))
     outcomes.emplace_back().test = test;
-  std::optional<OutputFile> output;
-  if (!options.output.empty()) output.emplace(options.output, options.force);
+  OutputFile output(options.output, options.force);
   const std::vector<Query> queries = read_queries(options.file);
 
   for (int pass = 0; pass < kPasses; ++pass)
@@ -116,7 +115,7 @@ void run_elementary(const ElementaryOptions& options) {
   } else {
     for (const Outcome& outcome : outcomes) document["tests"].push_back(to_json(outcome, queries));
   }
-  if (output) output->commit(document.dump(1) + "\n");
+  output.commit(document.dump(1) + "\n");
   if (!kept) end_with(ExitStatus::failed);
 }
 
@@ -130,10 +129,9 @@ void add_elementary(CLI::App& app) {
       "  cscd elementary data_0_0.csv --kind vf --elementary newton\n"
       "  cscd elementary data_0_0.csv --kind ee --elementary exact,cubic@1e-8,inclusion@1e-4:1000\n"
       "  cscd elementary data_0_0.csv --kind ee --elementary all\n\n"
-      "Eight rows a query, x_num,x_den,y_num,y_den,z_num,z_den[,truth]: four points at t = 0, then at t = "
-      "1.\n"
-      "vf: the vertex, then the triangle's corners. ee: the first edge's ends, then the second's.\n"
-      "Exit status 1 where a test is wrong in what it proves.");
+      "Eight rows a query, x_num,x_den,y_num,y_den,z_num,z_den[,truth]: four points at t = 0, then at t =\n"
+      "1. vf: the vertex, then the triangle's corners. ee: the first edge's ends, then the second's. Exit\n"
+      "status 1 where a test is wrong in what it proves.");
   command->add_option("file", options->file, "the queries, CSV")->required();
   command->add_option("--kind", options->kind, "vf or ee")->required()->check(CLI::IsMember({"vf", "ee"}));
   command

@@ -203,22 +203,25 @@ void run(const RunOptions& options) {
   require_sound(options.request);  // before anything is opened
   require_fit(options.thickness, elementary_test_named(options.request.elementary));
   if (!options.shards.empty()) make_folder(options.shards, "--shards");
+  const std::string& scene = options.request.scene;
+  bool ok = true;
   if (is_worker) {
-    if (!work(options)) end_with(ExitStatus::failed);
+    name_input(scene, [&] { ok = work(options); });
+    if (!ok) end_with(ExitStatus::failed);
     return;
   }
   std::error_code unknown;
   std::vector<std::string> several;
-  if (std::filesystem::is_directory(options.request.scene, unknown))
-    several = caches_in(options.request.scene);
-  else if (options.request.scene == kAllScenes)
+  if (std::filesystem::is_directory(scene, unknown))
+    several = caches_in(scene);
+  else if (scene == kAllScenes)
     several = scenes::all_scene_names();
   if (!several.empty()) {
     if (!run_each(options, several)) end_with(ExitStatus::failed);
     return;
   }
   OutputFile output(options.output, options.force);
-  const bool ok = run_one(options, options.request, output);
+  name_input(scene, [&] { ok = run_one(options, options.request, output); });
   std::printf("record: %s\n", options.output.c_str());
   if (!ok) end_with(ExitStatus::failed);
 }
@@ -254,16 +257,13 @@ void add_run(CLI::App& app) {
       "  cscd run --input FOLDER --json records      the same of every point cache (.h5) in FOLDER\n"
       "  cscd run --smoke --json smoke.json          a few intervals, in seconds\n"
       "  cscd run --shards shards --json rope.json     goes on where the same command was interrupted\n\n"
-      "First every strategy answers the verified intervals with the exact elementary test and is judged "
-      "against\n"
-      "the complete reference under its own guarantee. If one fails, the exit status is 1 and the record "
-      "holds\n"
-      "the failures and no times. Then the strategies are timed interleaved, interval by interval in a "
-      "seeded\n"
-      "random order. The record keeps every sample; `cscd tables` makes tables of it.\n\n"
-      "Rows that belong to a group (cscd list strategies) run only when they or their group is named: all "
-      "pairs of\n"
-      "triangles, a thousand million of them on the rope at every interval, and the ablation.");
+      "First every strategy answers the verified intervals with the exact elementary test and is judged\n"
+      "against the complete reference under its own guarantee. If one fails, the exit status is 1 and the\n"
+      "record holds the failures and no times. Then the strategies are timed interleaved, interval by\n"
+      "interval in a seeded random order. The record keeps every sample; `cscd tables` makes tables of "
+      "it.\n\n"
+      "Rows that belong to a group (cscd list strategies) run only when they or their group is named: all\n"
+      "pairs of triangles, a thousand million of them on the rope at every interval, and the ablation.");
   add_replay_options(*command, options->request);
   add_options(*command, ignore_options(), options->ignored);
   add_options(*command, thickness_options(), options->thickness);

@@ -37,6 +37,7 @@ bool is_standard_output(const std::filesystem::path& path) {
 
 OutputFile::OutputFile(std::filesystem::path path, bool force, std::string_view extension)
     : path_(std::move(path)) {
+  if (path_.empty()) return;
   if (is_standard_output(path_)) {
     standard_output_ = take_standard_output();
     return;
@@ -58,6 +59,7 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view piece) {
+  if (path_.empty()) return;
   if (file_) {
     file_->write(gzip_ ? gzip_->add(piece, false) : piece);
     return;
@@ -83,6 +85,7 @@ void OutputFile::copy_to(int descriptor) {
 }
 
 void OutputFile::commit() {
+  if (path_.empty()) return;
   if (file_) {
     if (gzip_) file_->write(gzip_->add({}, true));
     file_->finish();

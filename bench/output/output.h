@@ -26,6 +26,7 @@ class NobodyReads : public std::exception {
 // - A device or a pipe is written to as it is. It is opened when the answer is there.
 // - A file appears whole or not at all. A symbolic link stays, and its target is what appears.
 // - A file whose name ends in .gz after its extension is compressed with gzip.
+// - An empty name is nowhere: an output that is not asked for takes whatever it is given.
 class OutputFile {
  public:
   // Throws InputError if a file stands there (unless `force`), if nothing can be written there, or if the

@@ -61,7 +61,7 @@ void add_clusters(CLI::App& app) {
   auto options = std::make_shared<ClusterOptions>();
   CLI::App* command = app.add_subcommand("clusters",
                                          "Write the surface at one frame with the cluster of every triangle "
-                                         "and whether its observer saw it as positive "
+                                         "and whether the observer of that cluster sees its front "
                                          "throughout the interval, for a picture.");
   command->add_option("input", options->input, kInputHelp)->required();
   command->add_option("--frame", options->frame, "where the interval starts")->capture_default_str();

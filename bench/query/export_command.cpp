@@ -1,7 +1,7 @@
 #include <CLI/App.hpp>
 #include <cstdio>
 
-#include "bench/answer/answer_options.h"
+#include "bench/answer/answer_request.h"
 #include "bench/answer/clip_answerer.h"
 #include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
@@ -89,36 +89,30 @@ void export_input(const ExportOptions& options) {
         "note: intervals of %s end at a simulator's predictions, which .h5 alone keeps: what touches "
         "on the way there need not touch from frame to frame\n",
         options.input.c_str());
-  if (has_answers) {
+  name_input(options.input, [&] {
+    if (!has_answers)
+      return export_frames(input, parse_frames(options.frames, input), options.output, format, options.force);
     ClipAnswerer asked(options, std::move(input));
     export_answers(asked, options.output, format, options.force);
-  } else {
-    export_frames(input, parse_frames(options.frames, input), options.output, format, options.force);
-  }
+  });
 }
 
 }  // namespace
 
 void add_export(CLI::App& app) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App* command =
-      app.add_subcommand("export",
-                         "Write the frames that a run replays for another program; the "
-                         "extension names the format.\n\n"
-                         "  cscd export rope rope.h5            a point cache, exactly\n"
-                         "  cscd export rope rope.glb           a linearly skinned scene with "
-                         "its bones; --bake: any input, without\n"
-                         "  cscd export walk.fbx walk.pc2       a mesh cache for Blender or "
-                         "Maya (.mdd too) beside walk.obj\n"
-                         "  cscd export rope frames/rope.ply    a file a frame (.obj too), "
-                         "exactly: frames/rope.0000.ply ...\n"
-                         "  cscd export hand hand.ply --events   the same, coloured by what lies inside "
-                         "what, with its curves\n"
-                         "  cscd export rope rope.pvd           for ParaView, with clusters, "
-                         "orientation and contacts\n"
-                         "  cscd export rope rope.usda          points over time, coloured by "
-                         "what touches, with contacts\n"
-                         "  cscd export character.glb walk.h5 --clip walk --fps 60");
+  CLI::App* command = app.add_subcommand(
+      "export",
+      "Write the frames that a run replays for another program; the extension names the format.\n\n"
+      "  cscd export rope rope.h5            a point cache, exactly\n"
+      "  cscd export rope rope.glb           a linearly skinned scene with its bones; --bake: any input, "
+      "without\n"
+      "  cscd export walk.fbx walk.pc2       a mesh cache for Blender or Maya (.mdd too) beside walk.obj\n"
+      "  cscd export rope frames/rope.ply    a file a frame (.obj too), exactly: frames/rope.0000.ply ...\n"
+      "  cscd export hand hand.ply --events   the same, coloured by what lies inside what, with its curves\n"
+      "  cscd export rope rope.pvd           for ParaView, with clusters, orientation and contacts\n"
+      "  cscd export rope rope.usda          points over time, coloured by what touches, with contacts\n"
+      "  cscd export character.glb walk.h5 --clip walk --fps 60");
   add_answer_options(*command, *options);
   command->add_option("output", options->output, "the file to write; its extension names the format")
       ->required();

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/answer/answer_text.h"
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/inputs/input.h"
 #include "bench/inputs/input_options.h"
@@ -13,6 +14,7 @@
 #include "bench/strategies/strategy_row.h"
 #include "core/base/number_text.h"
 #include "core/detect/start/embedding.h"
+#include "scenes/base/joined.h"
 #include "scenes/character/pieces.h"
 
 // `cscd inspect` says what an input is made of and what each strategy can do with it, for every component and
@@ -146,23 +148,17 @@ json piece_json(const Piece& piece, std::span<const Moment> moments, bool has_bo
 }
 
 std::string number(const json& value) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.6g", value.get<double>());
-  return digits;
+  return rounded_text(value, 6);
 }
 
 std::string embedding_text(const json& embedding) {
   constexpr std::size_t kMostNamed = 6;
-  std::string not_embedded;
-  std::size_t good = 0, bad = 0;
-  for (const json& row : embedding) {
-    good += row["embedded"].get<bool>();
-    if (!row["embedded"].get<bool>() && ++bad <= kMostNamed)
-      not_embedded += (not_embedded.empty() ? "; meets itself at " : ", ") + row["moment"].get<std::string>();
-  }
-  if (bad > kMostNamed) not_embedded += " and " + std::to_string(bad - kMostNamed) + " more";
-  return "embedded at " + std::to_string(good) + " of " + std::to_string(embedding.size()) +
-         " moments (rest and starts of clips)" + not_embedded;
+  std::vector<std::string> bad;
+  for (const json& row : embedding)
+    if (!row["embedded"].get<bool>()) bad.push_back(row["moment"]);
+  return "embedded at " + std::to_string(embedding.size() - bad.size()) + " of " +
+         std::to_string(embedding.size()) + " moments (rest and starts of clips)" +
+         (bad.empty() ? "" : "; meets itself at " + first_of(bad, kMostNamed, ""));
 }
 
 std::string strategies_text(const json& strategies) {
@@ -260,8 +256,7 @@ void print(const json& document) {
 }
 
 void inspect(InspectOptions options) {
-  std::optional<OutputFile> output;
-  if (!options.output.empty()) output.emplace(options.output, options.force);
+  OutputFile output(options.output, options.force);
   if (is_model_file(options.input)) options.model.import.survey = options.model.import.one_pose = true;
   Input input = open_input(options.input, options.model);
   say_what_was_read(input, stdout);
@@ -297,7 +292,7 @@ void inspect(InspectOptions options) {
   json strategies = strategies_json(input.mesh, has_bones, together);
   document["together"] = {{"embedding", std::move(together)}, {"strategies", std::move(strategies)}};
   if (input.thickness.length > 0) document["thickness"] = close_json(input);
-  if (output) output->commit(document.dump(1) + "\n");
+  output.commit(document.dump(1) + "\n");
   print(document);
 }
 

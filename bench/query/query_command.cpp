@@ -9,7 +9,7 @@
 #include <set>
 
 #include "bench/answer/answer_json.h"
-#include "bench/answer/answer_options.h"
+#include "bench/answer/answer_request.h"
 #include "bench/answer/answer_text.h"
 #include "bench/answer/clip_answerer.h"
 #include "bench/answer/verdicts.h"
@@ -19,6 +19,7 @@
 #include "bench/output/output.h"
 #include "core/base/error.h"
 #include "core/base/number_text.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {
@@ -72,16 +73,6 @@ Said say_clip(const QueryOptions& options, Input input, JsonStream* document, bo
   return said;
 }
 
-// "'walk', 'run', 'jump' and 2 more".
-std::string listed_names(const std::vector<std::string>& names) {
-  constexpr std::size_t kMost = 6;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(kMost, names.size()); ++i)
-    text += (i > 0 ? ", '" : "'") + names[i] + "'";
-  if (names.size() > kMost) text += " and " + std::to_string(names.size() - kMost) + " more";
-  return text;
-}
-
 // What the verdicts of all clips come to, as a sentence and in JSON.
 class AllVerdicts {
  public:
@@ -97,7 +88,7 @@ class AllVerdicts {
     const auto say = [&](const std::vector<std::string>& names, const char* one, const char* several) {
       if (names.empty()) return;
       text += (text.empty() ? " " : "; ") + std::to_string(names.size()) + " " +
-              (names.size() == 1 ? one : several) + " (" + listed_names(names) + ")";
+              (names.size() == 1 ? one : several) + " (" + first_of(names, 6) + ")";
     };
     say(names_[IntervalVerdict::intersects_at_start], "crosses itself at the start of intervals",
         "cross themselves at the start of intervals");
@@ -187,15 +178,12 @@ Said say_answers(QueryOptions options, JsonStream* document) {
 void query(QueryOptions options) {
   require_sound(options);
   most_start_pairs(options.start_pairs);
-  std::optional<OutputFile> output;
-  if (!options.output.empty()) output.emplace(options.output, options.force);
-
-  JsonStream document([&](std::string_view piece) { output->write(piece); });
-  const Said said = say_answers(options, output ? &document : nullptr);
-  if (output) {
-    document.finish();
-    output->commit();
-  }
+  OutputFile output(options.output, options.force);
+  JsonStream document([&](std::string_view piece) { output.write(piece); });
+  const bool is_written = !options.output.empty();
+  const Said said = say_answers(options, is_written ? &document : nullptr);
+  if (is_written) document.finish();
+  output.commit();
   const bool fails = said.too_deep || (options.fail_on_contact && collides(said.verdict));
   end_with(fails ? ExitStatus::contact_found : ExitStatus::done);
 }
@@ -213,25 +201,19 @@ void add_query(CLI::App& app) {
       "  cscd query character.h5 --strategy base --frames 0:10 --json answer.json\n"
       "  cscd query character.glb --clip all --fail-on-contact --json - | jq .clips[].summary\n\n"
       "Prints what a person wants to know. With --json FILE the whole answer goes there as JSON (schema\n"
-      "cscd.query/4); --json - is standard output, and the text then goes to standard error. A file of "
-      "several\n"
-      "clips is answered as a list, `clips`, unless --clip names one; with --clip all any model file is.\n\n"
-      "Each interval is clear, touches, or intersects_at_start; with --thickness, it may also be close: "
-      "then\n"
-      "something comes that near and nothing touches (with --first, as far as is looked). What crosses at "
-      "rest (eyes in sockets, "
-      "clothes\n"
-      "in skin) is how a character is made: pairs of triangles that cross in the bind pose, or in frame 0 of "
-      "a\n"
-      "point cache, are named once and left out until they part, unless --keep-rest-crossings.\n\n"
-      "Where a start is not embedded, the guarantee first_contact is void, and the fastest complete "
-      "strategy\n"
-      "answers that interval instead (--unproven: do not). Whoever wants the earliest contact and no later "
-      "ones\n"
-      "has it sooner with --first.\n\n"
-      "Where triangles cross at starts, the text lists the ten places in which the surface lies deepest in "
-      "itself:\n"
-      "which piece in which, how deep, and from when to when. The JSON has all of them.");
+      "cscd.query/4); --json - is standard output, and the text then goes to standard error. A file of\n"
+      "several clips is answered as a list, `clips`, unless --clip names one; with --clip all any model\n"
+      "file is.\n\n"
+      "Each interval is clear, touches, or intersects_at_start; with --thickness, it may also be close:\n"
+      "then something comes that near and nothing touches (with --first, as far as is looked). What crosses\n"
+      "at rest (eyes in sockets, clothes in skin) is how a character is made: pairs of triangles that cross\n"
+      "in the bind pose, or in frame 0 of a point cache, are named once and left out until they part,\n"
+      "unless --keep-rest-crossings.\n\n"
+      "Where a start is not embedded, the guarantee first_contact is void, and the fastest complete\n"
+      "strategy answers that interval instead (--unproven: do not). Whoever wants the earliest contact and\n"
+      "no later ones has it sooner with --first.\n\n"
+      "Where triangles cross at starts, the text lists the ten places in which the surface lies deepest in\n"
+      "itself: which piece in which, how deep, and from when to when. The JSON has all of them.");
   add_answer_options(*command, *options);
   static const OptionRow<QueryOptions> rows[] = {
       {"--json", &QueryOptions::output, "where the whole answer goes; - is standard output"},

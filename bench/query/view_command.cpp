@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bench/answer/answer_json.h"
-#include "bench/answer/answer_options.h"
+#include "bench/answer/answer_request.h"
 #include "bench/answer/clip_answerer.h"
 #include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
@@ -209,9 +209,8 @@ void add_view(CLI::App& app) {
       "  cscd view character.glb --clip all         every clip in one page, with a list to choose from\n"
       "  cscd view octopus --strategy drvbc --strategy drvbc_fast -o octopus.html\n\n"
       "The page needs no network and no server: open it in a browser. It begins at the first contact.\n"
-      "Answers are those of cscd query with the same options. Positions are rounded to 65535 steps across "
-      "the\n"
-      "clip's box for the page; the answers come from the exact ones.");
+      "Answers are those of cscd query with the same options. Positions are rounded to 65535 steps across\n"
+      "the clip's box for the page; the answers come from the exact ones.");
   add_answer_options(*command, *options, true);
   const OptionRow<ViewOptions> rows[] = {
       {.name = "--up",

@@ -33,12 +33,6 @@ std::string shortfall_text(const Shortfall& lacking) {
   return out;
 }
 
-std::string shortfall_meaning() {
-  return std::string(kShortfallMark) +
-         " The row does not answer everything that a complete row answers, so its time is not for the same "
-         "work";
-}
-
 std::string shortfall_note(std::span<const Record> records) {
   std::string out;
   bool is_void = false, is_thick = false;
@@ -55,7 +49,7 @@ std::string shortfall_note(std::span<const Record> records) {
              rows + "\n";
   }
   if (out.empty()) return out;
-  return shortfall_meaning() +
+  return kShortfallMeaning +
          (is_void ? ".\nA promise is void on an interval whose start is not embedded: the surface crosses "
                     "itself there" +
                         std::string(is_thick ? ", or with a thickness, something is close" : "")

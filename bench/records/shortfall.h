@@ -12,6 +12,9 @@
 namespace cscd::bench {
 
 inline constexpr std::string_view kShortfallMark = "*";
+// What the mark stands for, the mark first and without the full stop.
+inline constexpr char kShortfallMeaning[] =
+    "* The row does not answer everything that a complete row answers, so its time is not for the same work";
 
 // What a row's answers lack on the verified intervals of a record.
 struct Shortfall {
@@ -33,9 +36,6 @@ std::string shortfall_text(const Shortfall& lacking);
 
 // Whether rows of a guarantee, by its name, promise something only from an embedded start.
 bool needs_embedded_start(const std::string& guarantee);
-
-// What the mark stands for, without the full stop.
-std::string shortfall_meaning();
 
 // The footnote to all marks of these records, one line for each scene; empty where there is no mark.
 std::string shortfall_note(std::span<const Record> records);

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
@@ -19,10 +20,8 @@ std::vector<Contact> sorted_by_pair(const ContactSet& set) {
 
 std::string describe(const Contact& contact) {
   const bool vf = contact.pair.kind == FeaturePair::Kind::vertex_face;
-  char text[120];
-  std::snprintf(text, sizeof text, "%s %d, %s %d at t = %.17g", vf ? "vertex" : "edge", contact.pair.a,
-                vf ? "triangle" : "edge", contact.pair.b, contact.time);
-  return text;
+  return (vf ? "vertex " : "edge ") + std::to_string(contact.pair.a) + (vf ? ", triangle " : ", edge ") +
+         std::to_string(contact.pair.b) + " at t = " + exact_text(contact.time);
 }
 
 }  // namespace

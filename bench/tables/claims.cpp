@@ -155,12 +155,13 @@ ClaimResult judge(const ordered_json& claim, const ordered_json& stage_rows,
 }
 
 std::string figure_or_reason(const Measured& measured) {
-  return measured.value ? figure_text(*measured.value) : measured.reason;
+  return measured.value ? text_of(measured, false) : measured.reason;
 }
 
 std::string figure(const Evidence& evidence) {
-  const std::string text = figure_or_reason(evidence.measured);
-  return evidence.holds || !evidence.measured.value ? text : "**" + text + "**";
+  if (evidence.holds || !evidence.measured.value) return figure_or_reason(evidence.measured);
+  const std::string mark(evidence.measured.marked ? kShortfallMark : "");
+  return "**" + figure_text(*evidence.measured.value) + "**" + mark;
 }
 
 bool same(const Measured& a, const Measured& b) {
@@ -264,11 +265,11 @@ ordered_json claims_json(std::span<const ClaimResult> claims) {
       ordered_json& row = evidence.emplace_back(ordered_json{{"scene", e.scene}, {"title", e.title}});
       if (e.measured.value)
         row.update(
-            {{"measured", *e.measured.value}, {"text", figure_text(*e.measured.value)}, {"holds", e.holds}});
+            {{"measured", *e.measured.value}, {"text", text_of(e.measured, false)}, {"holds", e.holds}});
       else
         row["reason"] = e.measured.reason;
       if (e.today && e.today->value)
-        row.update({{"today", *e.today->value}, {"today_text", figure_text(*e.today->value)}});
+        row.update({{"today", *e.today->value}, {"today_text", text_of(*e.today, false)}});
     }
     out.push_back({{"id", claim.id},
                    {"quote", claim.quote},
@@ -317,6 +318,8 @@ std::string claims_markdown(std::span<const ClaimResult> claims) {
       out += markdown_table(head, rows) + "\n";
     }
     if (!claim.stages.empty()) out += stages_markdown(claim) + "\n";
+    const auto marked = [](const Evidence& e) { return e.measured.marked || (e.today && e.today->marked); };
+    if (std::ranges::any_of(claim.evidence, marked)) out += std::string("\\") + kShortfallMeaning + "\n";
     if (!claim.not_measured_because.empty()) out += claim.not_measured_because + "\n";
   }
   return out;

@@ -158,5 +158,17 @@ TEST(Claims, ShippedOnesAreComplete) {
     EXPECT_EQ(claim.verdict, ClaimVerdict::not_measured) << claim.id;
 }
 
+// Mutation: the ratio stands without the mark that its times have.
+TEST(Claims, MarkRatiosOfTimesThatAreNotForTheSameWork) {
+  ClaimResult claim;
+  claim.evidence = {{"rope", "times faster", {1.5, {}, "", true}, true}};
+  const std::string page = claims_markdown(std::vector{claim});
+  EXPECT_NE(page.find("| 1.5* |"), std::string::npos) << page;
+  EXPECT_NE(page.find(std::string("\n\\") + kShortfallMeaning), std::string::npos) << page;
+  EXPECT_EQ(claims_json(std::vector{claim})[0]["evidence"][0]["text"], "1.5*");
+  claim.evidence[0].measured.marked = false;
+  EXPECT_EQ(claims_markdown(std::vector{claim}).find(kShortfallMeaning), std::string::npos);
+}
+
 }  // namespace
 }  // namespace cscd::bench

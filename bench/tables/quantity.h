@@ -16,16 +16,13 @@ struct Measured {
   std::optional<double> value;
   std::optional<Estimate> interval;  // 95 %; absent for what has no noise: counters and sizes
   std::string reason;                // empty when there is a value
-  bool marked = false;               // a time that stands with kMarkNote where it is printed
+  bool marked = false;               // a time that stands with kShortfallMark where it is printed
   std::string of = {};               // the row that kBestBaseline stands for
 };
 
 // Stands in a definition for the complete row that has the least figure. Rows of the fast engine and rows
 // that are asked for the first contact alone are no baselines.
 inline constexpr char kBestBaseline[] = "best baseline";
-
-inline constexpr char kMarkNote[] =
-    "* did not keep all contacts of the verified intervals, or promises nothing from some of their starts";
 
 // What a definition (a column of table_definitions.json, a claim of claims.json) asks for:
 //   quantity   scene.triangles, scene.vertices, scene.bones

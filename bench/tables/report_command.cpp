@@ -163,8 +163,8 @@ void report(const ReportOptions& options) {
   std::vector<std::filesystem::path> runs =
       files.contains("run") ? files.at("run") : std::vector<std::filesystem::path>();
   const std::vector<Record> records = read_records(runs);
-  std::optional<OutputFile> document, output;
-  if (!options.json.empty()) document.emplace(options.json, options.force);
+  OutputFile document(options.json, options.force);
+  std::optional<OutputFile> output;
   const std::filesystem::path folder(options.folder), page = folder / "index.html";
   if (is_page) {
     std::error_code error;
@@ -175,7 +175,7 @@ void report(const ReportOptions& options) {
     output.emplace(page, options.force, ".html");
   }
   json shown = document_of(options, files, records, runs);
-  if (document) document->commit(shown.dump() + "\n");
+  document.commit(shown.dump() + "\n");
   if (!is_page) return;
   if (options.views) shown["views"] = write_views(records, folder, options.force);
   const std::string text = report_with(shown);
@@ -190,13 +190,11 @@ void add_report(CLI::App& app) {
   auto options = std::make_shared<ReportOptions>();
   CLI::App* command = app.add_subcommand(
       "report",
-      "Write one HTML page of the numbers in records: speed, work per interval, stage times, the paper's "
-      "tables\n"
-      "published beside measured, its claims, accuracy against time, growth and history.\n\n"
+      "Write one HTML page of the numbers in records: speed, work per interval, stage times, the paper's\n"
+      "tables published beside measured, its claims, accuracy against time, growth and history.\n\n"
       "  cscd report results/FOLDER --view -o site\n"
       "  cscd report results/FOLDER --json figures.json    the same as data; also of cscd accuracy or cscd "
-      "scale "
-      "alone\n\n"
+      "scale alone\n\n"
       "The page, site/index.html, needs no network. Every figure names the records that it comes from.");
   command
       ->add_option("records", options->records,

@@ -71,9 +71,8 @@ void add_tables(CLI::App& app) {
       "                                            every figure of every strategy in\n"
       "                                            tables.json and .csv; table1.tex and so on for LaTeX.\n"
       "                                            The folder has to exist\n\n"
-      "Times are means over the timed intervals, the median over the repetitions; ratios are paired within "
-      "a\n"
-      "repetition. A scene with a record of the pipeline `published` is shown in that one.");
+      "Times are means over the timed intervals, the median over the repetitions; ratios are paired within\n"
+      "a repetition. A scene with a record of the pipeline `published` is shown in that one.");
   command
       ->add_option("records", options->records,
                    "what cscd run wrote, at most one a scene and pipeline, or folders of it; other files of "

@@ -10,13 +10,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string interval(const Measured& measured) {
-  if (!measured.interval) return ",";
-  return short_text(measured.interval->low) + "," + short_text(measured.interval->high);
+std::string number(const std::optional<double>& value) {
+  return value ? rounded_text(*value, 4) : "";  // commas part the columns
 }
 
-std::string number(const std::optional<double>& value) {
-  return value ? short_text(*value) : "";
+std::string interval(const Measured& measured) {
+  if (!measured.interval) return ",";
+  return number(measured.interval->low) + "," + number(measured.interval->high);
 }
 
 ordered_json number_or_null(const std::optional<double>& value) {
@@ -92,7 +92,7 @@ ordered_json tables_json(std::span<const FilledTable> tables, std::span<const Sh
           {"published", {{"source", published.at("source")}, {"machine", published.at("machine")}}},
           {"records", std::move(sources)},
           {"remarks", std::move(said)},
-          {"mark_note", kMarkNote},
+          {"mark_note", kShortfallMeaning},
           {"shaped", std::move(all_shaped)},
           {"tables", std::move(out_tables)},
           {"claims", claims_json(claims)}};

@@ -231,7 +231,7 @@ std::string code_around(std::span<const Record> records) {
 
 std::string section_of(const ShapedTable& table) {
   return "\n## " + table.title + "\n\n" + table.legend + "\n\n" + markdown_of(table) +
-         (table.has_marks() ? std::string("\n\\") + kMarkNote + "\n" : "");
+         (table.has_marks() ? std::string("\n\\") + kShortfallMeaning + "\n" : "");
 }
 
 std::string claims_section(std::span<const ClaimResult> claims, const std::string& why_none) {
@@ -305,7 +305,7 @@ std::string tables_text(std::span<const ShapedTable> tables, std::span<const Rem
     marked = marked || table.has_marks();
   }
   for (const Remark& one : remarks) said += remark_text(one);
-  if (marked || said.find(kShortfallMark) != std::string::npos) out += std::string(kMarkNote) + "\n";
+  if (marked || said.find(kShortfallMark) != std::string::npos) out += std::string(kShortfallMeaning) + "\n";
   return out + said + (page.empty() ? "" : remark_text({"page", page}));
 }
 
@@ -349,7 +349,7 @@ std::string latex_table(const ShapedTable& table) {
     body += " \\\\\n";
   }
   std::string caption = title(table.title) + ". " + table.legend;
-  if (table.has_marks()) caption += std::string(" ") + kMarkNote + ".";
+  if (table.has_marks()) caption += std::string(" ") + kShortfallMeaning + ".";
   return "% Made by `cscd tables`; needs \\usepackage{booktabs,graphicx}.\n\\begin{table*}\n\\centering\n"
          "\\footnotesize\n\\setlength{\\tabcolsep}{2pt}\n\\caption{" +
          escaped(caption) + "}\n\\label{tab:" + table.id +

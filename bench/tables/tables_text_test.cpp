@@ -40,7 +40,7 @@ TEST(TablesText, PlaceTheSameTexts) {
                              {{"rope", "measured", {"48,440", "1,458", "0.2*"}},
                               {"", "published", {"48,440", "260.1", ""}},
                               {"my_scene", "", {"7", "", "0.1"}, true}}};
-  const std::string note(kMarkNote), today(kTodayNote);
+  const std::string note(kShortfallMeaning), today(kTodayNote);
   EXPECT_EQ(tables_text(std::vector{table}, std::vector<Remark>{{"measured", "here"}}, "site"),
             "Table 1. Sizes\nK: thousands.\n"
             "                       -- RVBC --\n"
@@ -79,8 +79,8 @@ TEST(TablesText, HaveOneFootnote) {
   EXPECT_NE(text_of(records).find(kTodayNote), std::string::npos);
   for (Record& record : records) record.verification.strategies = {{"drvbc", "first_contact", 5, 4, 5, {}}};
   const std::string text = text_of(records);
-  EXPECT_EQ(text.find(kMarkNote), text.rfind(kMarkNote));
-  EXPECT_NE(text.find(kMarkNote), std::string::npos);
+  EXPECT_EQ(text.find(kShortfallMeaning), text.rfind(kShortfallMeaning));
+  EXPECT_NE(text.find(kShortfallMeaning), std::string::npos);
 }
 
 // Mutation: a column that no figure needs so wide.
@@ -127,6 +127,9 @@ TEST(TablesText, ClaimNothingFromAPartOfAScene) {
     for (const std::string& said : {text, page})
       for (const char* claim : {"times faster than", "reproduced", "(claims.md)"})
         EXPECT_EQ(said.find(claim), std::string::npos) << claim << said;
+    for (const ShapedTable& list : page_lists(records))
+      for (const ShapedTable::Line& line : list.lines)
+        EXPECT_EQ(line.scene.find("times faster"), std::string::npos) << list.id << ": " << line.scene;
     EXPECT_FALSE(any_measured(judge_claims(records)));
   }
   EXPECT_TRUE(any_measured(judge_claims(wide_records({"rope"}))));

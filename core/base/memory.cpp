@@ -114,11 +114,12 @@ std::uint64_t available_memory() {
 }
 
 MemoryShortage::MemoryShortage(std::size_t pairs, std::uint64_t needed, std::uint64_t left) noexcept {
-  const int length = std::snprintf(text_, sizeof text_,
-                                   "%zu pairs of features are near enough so far, and going on takes %llu MB "
-                                   "more memory, of which %llu MB "
-                                   "are left",
-                                   pairs, megabytes(needed), megabytes(left));
+  char so_far[80] = "testing the pairs of features that may be near";
+  if (pairs > 0)
+    std::snprintf(so_far, sizeof so_far, "%zu pairs of features are near enough so far, and going on", pairs);
+  const int length =
+      std::snprintf(text_, sizeof text_, "%s takes %llu MB more memory, of which %llu MB are left", so_far,
+                    megabytes(needed), megabytes(left));
   finding_ = static_cast<std::size_t>(length);
   std::snprintf(
       text_ + length, sizeof text_ - finding_,

@@ -62,6 +62,8 @@ TEST(Memory, IsNamedWithoutAdvice) {
       shortage.finding(),
       "7 pairs of features are near enough so far, and going on takes 5 MB more memory, of which 4 MB are "
       "left");
+  EXPECT_EQ(MemoryShortage(0, 5'000'000, 4'000'000).finding(),
+            "testing the pairs of features that may be near takes 5 MB more memory, of which 4 MB are left");
 }
 
 }  // namespace

@@ -41,18 +41,18 @@ inline std::string rounded_text(double number, int digits) {
   return text;
 }
 
-// A number in a sentence: rounded to four digits.
-inline std::string short_text(double number) {
-  return rounded_text(number, 4);
-}
-
-// A figure of a table or a page: rounded to three digits, with commas between thousands.
-inline std::string figure_text(double number) {
-  std::string text = rounded_text(number, 3);
+// A figure as people read it, with commas between thousands: in a table or on a page rounded to three digits.
+inline std::string figure_text(double number, int digits = 3) {
+  std::string text = rounded_text(number, digits);
   const std::size_t begin = text.starts_with('-') ? 1 : 0;
   if (text.find_first_not_of("0123456789", begin) != std::string::npos) return text;
   for (std::size_t at = text.size(); at > begin + 3;) text.insert(at -= 3, ",");
   return text;
+}
+
+// In a sentence, rounded to four digits.
+inline std::string short_text(double number) {
+  return figure_text(number, 4);
 }
 
 // "1 frame", "2 frames", "3 vertices".

@@ -20,8 +20,8 @@ TEST(NumberText, OfAFigureHasThreeDigitsAndCommas) {
 
 TEST(NumberText, InASentenceHasFourDigitsAndAllBeforeThePoint) {
   EXPECT_EQ(short_text(0.123456), "0.1235");
-  EXPECT_EQ(short_text(9999.4), "9999");
-  EXPECT_EQ(short_text(12345.6), "12346");
+  EXPECT_EQ(short_text(9999.4), "9,999");
+  EXPECT_EQ(short_text(12345.6), "12,346");
   EXPECT_EQ(short_text(1e300), "1e+300");
   EXPECT_EQ(exact_text(0.1), "0.1");
 }

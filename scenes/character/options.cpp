@@ -1,35 +1,13 @@
 #include "scenes/character/options.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <string_view>
-#include <type_traits>
-#include <variant>
 
 #include "core/base/error.h"
 #include "core/base/number_text.h"
 
 namespace cscd::scenes {
 namespace {
-
-struct Row {
-  std::string_view name;
-  std::variant<bool ImportOptions::*, std::string ImportOptions::*,
-               std::optional<std::size_t> ImportOptions::*, std::optional<double> ImportOptions::*>
-      member;
-};
-constexpr Row kRows[] = {{"--component", &ImportOptions::component},
-                         {"--fps", &ImportOptions::fps},
-                         {"--clip", &ImportOptions::clip},
-                         {"--clip-number", &ImportOptions::clip_number},
-                         {"--fill-holes", &ImportOptions::fill_holes},
-                         {"--weld", &ImportOptions::weld},
-                         {"--from-bind-pose", &ImportOptions::from_bind_pose},
-                         {"--flip-inward", &ImportOptions::flip_inward},
-                         {"--survey", &ImportOptions::survey},
-                         {"--one-pose", &ImportOptions::one_pose},
-                         {"--motion", &ImportOptions::motion}};
 
 template <class Number>
 Number number(const std::string& option, const std::string& digits) {
@@ -50,21 +28,21 @@ void check(const ImportOptions& options) {
 }  // namespace
 
 std::vector<std::string> to_arguments(const ImportOptions& options) {
-  std::vector<std::string> words;
-  for (const Row& row : kRows)
-    std::visit(
-        [&](const auto member) {
-          const auto& value = options.*member;
-          using Value = std::decay_t<decltype(value)>;
-          if constexpr (std::is_same_v<Value, bool>) {
-            if (value) words.emplace_back(row.name);
-          } else if constexpr (std::is_same_v<Value, std::string>) {
-            if (!value.empty()) words.insert(words.end(), {std::string(row.name), value});
-          } else {
-            if (value) words.insert(words.end(), {std::string(row.name), exact_text(*value)});
-          }
-        },
-        row.member);
+  std::vector<std::string> words{"--component", options.component};
+  const auto add = [&](const std::string& name, const std::string& value) {
+    words.push_back(name);
+    words.push_back(value);
+  };
+  if (options.fps) add("--fps", exact_text(*options.fps));
+  if (!options.clip.empty()) add("--clip", options.clip);
+  if (options.clip_number) add("--clip-number", std::to_string(*options.clip_number));
+  if (options.fill_holes) add("--fill-holes", std::to_string(*options.fill_holes));
+  if (options.weld) add("--weld", exact_text(*options.weld));
+  if (options.from_bind_pose) words.push_back("--from-bind-pose");
+  if (options.flip_inward) words.push_back("--flip-inward");
+  if (options.survey) words.push_back("--survey");
+  if (options.one_pose) words.push_back("--one-pose");
+  if (!options.motion.empty()) add("--motion", options.motion);
   return words;
 }
 
@@ -72,24 +50,35 @@ ImportOptions parse_arguments(std::span<const std::string> arguments) {
   ImportOptions options;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string& name = arguments[i];
-    const auto row = std::ranges::find(kRows, name, &Row::name);
-    if (row == std::end(kRows)) throw InputError("option " + name + " is not known");
     const auto value = [&]() -> const std::string& {
       if (++i >= arguments.size()) throw InputError(name + ": needs a value");
       return arguments[i];
     };
-    std::visit(
-        [&](const auto member) {
-          auto& taken = options.*member;
-          using Value = std::decay_t<decltype(taken)>;
-          if constexpr (std::is_same_v<Value, bool>)
-            taken = true;
-          else if constexpr (std::is_same_v<Value, std::string>)
-            taken = value();
-          else
-            taken = number<typename Value::value_type>(name, value());
-        },
-        row->member);
+    if (name == "--fps") {
+      options.fps = number<double>(name, value());
+    } else if (name == "--component") {
+      options.component = value();
+    } else if (name == "--clip") {
+      options.clip = value();
+    } else if (name == "--clip-number") {
+      options.clip_number = number<std::size_t>(name, value());
+    } else if (name == "--fill-holes") {
+      options.fill_holes = number<std::size_t>(name, value());
+    } else if (name == "--weld") {
+      options.weld = number<double>(name, value());
+    } else if (name == "--from-bind-pose") {
+      options.from_bind_pose = true;
+    } else if (name == "--flip-inward") {
+      options.flip_inward = true;
+    } else if (name == "--survey") {
+      options.survey = true;
+    } else if (name == "--one-pose") {
+      options.one_pose = true;
+    } else if (name == "--motion") {
+      options.motion = value();
+    } else {
+      throw InputError("option " + name + " is not known");
+    }
   }
   check(options);
   return options;

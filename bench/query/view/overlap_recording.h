@@ -13,7 +13,7 @@ namespace cscd::bench {
 // deep.
 class OverlapRecording {
  public:
-  // Adds the next interval, whose regions have the ways of their vertices.
+  // Adds the next interval, whose regions have the displacements of their vertices.
   void add(const OverlapEvents::Here& here, std::span<const Vec3> start);
   void write(Sections& sections) const;
 
