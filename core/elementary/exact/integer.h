@@ -1,6 +1,21 @@
 #pragma once
 
+// Boost 1.74 includes <iostream>, and libstdc++ then constructs an object before main(), which no copy of the
+// engine may (scripts/cmake/instruction_sets.cmake). Boost needs no more of it than these two, so here it is
+// taken to be included.
+#include <istream>
+#include <ostream>
+// Boost 1.74 names std::unary_function, which libc++ no longer has.
+#if defined(_LIBCPP_VERSION) && !defined(BOOST_NO_CXX98_FUNCTION_BASE)
+#define BOOST_NO_CXX98_FUNCTION_BASE
+#endif
+#ifdef _GLIBCXX_IOSTREAM
 #include <boost/multiprecision/cpp_int.hpp>
+#else
+#define _GLIBCXX_IOSTREAM
+#include <boost/multiprecision/cpp_int.hpp>
+#undef _GLIBCXX_IOSTREAM
+#endif
 
 namespace cscd::exact {
 
