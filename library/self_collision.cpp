@@ -1,27 +1,39 @@
 #include <algorithm>
+#include <array>
 #include <atomic>
-#include <optional>
 #include <stdexcept>
+#include <utility>
 
-#include "core/base/error.h"
-#include "core/base/instruction_set.h"
-#include "core/base/number_text.h"
-#include "library/engine.h"
-#include "library/held.h"
+#include "library/engine/engine.h"
 
 #include "cscd/cscd.h"
 
 namespace cscd {
 namespace {
 
-// Runs the call, and turns errors of the input into the library's.
-template <class Call>
-auto checked(const Call& call) {
-  try {
-    return call();
-  } catch (const InputError& error) {
-    throw std::invalid_argument(error.what());
-  }
+// An engine that this binary holds.
+struct Built {
+  InstructionSet set;
+  decltype(&make_engine<kCompiledFor>) make;
+};
+using enum InstructionSet;
+#if defined(CSCD_ALL_ISAS)
+constexpr std::array kBuilt = {Built{avx512, make_engine<avx512>}, Built{avx2, make_engine<avx2>},
+                               Built{baseline, make_engine<baseline>}};
+#else
+constexpr std::array kBuilt = {Built{kCompiledFor, make_engine<kCompiledFor>}};
+#endif
+
+const Built& choose() {
+  std::array<InstructionSet, kBuilt.size()> sets;
+  std::ranges::transform(kBuilt, sets.begin(), &Built::set);
+  return *std::ranges::find(kBuilt, chosen_among(sets), &Built::set);
+}
+
+// The choice is made once a process. If it fails, the next call makes it again.
+const Built& chosen() {
+  static const Built& choice = choose();
+  return choice;
 }
 
 // Returns what differs from thread to thread. Standard libraries without threads have no std::thread::id.
@@ -52,101 +64,77 @@ class Turn {
   std::atomic<const void*>& asked_by_;
 };
 
-// Asks an object, unless a call is asking it already.
-template <class Engine, class Call>
-auto ask(const std::unique_ptr<Engine>& engine, const Call& call) {
-  Engine& own = held(engine);
+// What an object holds, unless it has been moved from.
+SelfCollision::Engine& held(const std::unique_ptr<SelfCollision::Engine>& engine) {
+  if (!engine)
+    throw std::invalid_argument("this SelfCollision has been moved from; use the one it was moved to");
+  return *engine;
+}
+
+// Asks an object's engine by one of its methods, unless a call is asking it already.
+template <class Method, class... Arguments>
+auto ask(const std::unique_ptr<SelfCollision::Engine>& engine, Method method, Arguments&&... arguments) {
+  SelfCollision::Engine& own = held(engine);
   const Turn turn(own.asked_by);
-  return checked([&] { return call(own); });
+  return (own.*method)(std::forward<Arguments>(arguments)...);
 }
 
 }  // namespace
 
+std::string_view instruction_set() {
+  return to_string(chosen().set);
+}
+
 SelfCollision::SelfCollision(const Faces& faces, const Positions& reference, Options options)
-    : engine_(checked([&] {
-        // Throws if it cannot be what the environment asks for. Asked once: the choice holds for the process.
-        [[maybe_unused]] static const std::string_view chosen = instruction_set();
-        return std::make_unique<Engine>(faces, reference, std::move(options));
-      })) {}
+    : engine_(chosen().make(faces, reference, std::move(options))) {}
 SelfCollision::~SelfCollision() = default;
 SelfCollision::SelfCollision(SelfCollision&&) noexcept = default;
 SelfCollision& SelfCollision::operator=(SelfCollision&&) noexcept = default;
 
 void SelfCollision::place_obstacle(std::size_t obstacle, const Positions& positions) {
-  ask(engine_, [&](Engine& engine) { engine.move(obstacle, positions, positions); });
+  ask(engine_, &Engine::place_obstacle, obstacle, positions);
 }
-
 void SelfCollision::move_obstacle(std::size_t obstacle, const Positions& start, const Positions& end) {
-  ask(engine_, [&](Engine& engine) { engine.move(obstacle, start, end); });
+  ask(engine_, &Engine::move_obstacle, obstacle, start, end);
 }
-
 bool SelfCollision::is_free(const Positions& start, const Positions& end) {
-  return ask(engine_, [&](Engine& engine) { return engine.is_free(engine.motion(start, end)); });
+  return ask(engine_, &Engine::is_free, start, end);
 }
-
 void SelfCollision::first_contact(const Positions& start, const Positions& end, Answer& out) {
-  ask(engine_, [&](Engine& engine) {
-    const Motion motion = engine.motion(start, end);
-    engine.step(motion, true);
-    engine.write(motion, out);
-  });
+  ask(engine_, &Engine::first_contact, start, end, out);
 }
-
 void SelfCollision::all_contacts(const Positions& start, const Positions& end, Answer& out) {
-  ask(engine_, [&](Engine& engine) {
-    const Motion motion = engine.motion(start, end);
-    engine.step(motion, false);
-    engine.write(motion, out);
-  });
+  ask(engine_, &Engine::all_contacts, start, end, out);
 }
-
 double SelfCollision::largest_step(const Positions& start, const Positions& end, double safety) {
-  return ask(engine_, [&](Engine& engine) {
-    if (!(safety > 0 && safety <= 1))
-      throw InputError("largest_step: safety " + exact_text(safety) + "; give a number in (0, 1]");
-    const std::optional<double> time = engine.free_until(engine.motion(start, end));
-    if (!time) return 1.0;
-    return safety * *time;
-  });
+  return ask(engine_, &Engine::largest_step, start, end, safety);
 }
-
 SelfCollision::Candidates SelfCollision::candidates(const Positions& start, const Positions& end,
                                                     double radius) {
-  return ask(engine_, [&](Engine& engine) {
-    Candidates out;
-    const Motion motion = engine.motion(start, end);
-    engine.check_finite(motion.start(), "start positions");
-    engine.check_finite(motion.end(), "end positions");
-    engine.candidates(motion, radius, out);
-    return out;
-  });
+  return ask(engine_, &Engine::candidates, start, end, radius);
 }
-
 std::vector<double> SelfCollision::vertex_bounds(const Positions& positions, double cap) {
-  return ask(engine_, [&](Engine& engine) { return engine.vertex_bounds(engine.pose(positions), cap); });
+  return ask(engine_, &Engine::vertex_bounds, positions, cap);
 }
-
 SelfCollision::Crossings SelfCollision::crossings(const Positions& positions) {
-  return ask(engine_, [&](Engine& engine) { return engine.crossings(engine.pose(positions)); });
+  return ask(engine_, &Engine::crossings, positions);
 }
-
 SelfCollision::PathsAnswer SelfCollision::true_motion(const Paths& paths, double from, double to,
                                                       double resolution) {
-  return ask(engine_, [&](Engine& engine) { return engine.true_motion(paths, from, to, resolution); });
+  return ask(engine_, &Engine::true_motion, paths, from, to, resolution);
 }
-
 std::vector<std::byte> SelfCollision::preparation() const {
-  return ask(engine_, [](const Engine& engine) { return engine.preparation(); });
+  return ask(engine_, &Engine::preparation);
 }
 
 std::size_t SelfCollision::vertex_count() const {
-  return held(engine_).mesh().vertex_count();
+  return held(engine_).vertex_count();
 }
 std::size_t SelfCollision::face_count() const {
-  return held(engine_).mesh().triangle_count();
+  return held(engine_).face_count();
 }
 bool SelfCollision::closed() const {
-  return held(engine_).mesh().closed_and_oriented();
+  return held(engine_).closed();
 }
 
 }  // namespace cscd

@@ -11,14 +11,15 @@ set(CSCD_WIDE_ISAS avx2 avx512)
 set(CSCD_OPTIONS_avx2 -mavx2 -mfma -mbmi -mbmi2 -mpopcnt)
 set(CSCD_OPTIONS_avx512 ${CSCD_OPTIONS_avx2} -mavx512f -mavx512bw -mavx512cd -mavx512dq -mavx512vl)
 set(all_isas_by_default ON)
-if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" OR CSCD_NATIVE OR CMAKE_BUILD_TYPE STREQUAL Debug
+if(WIN32 OR NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" OR CSCD_NATIVE OR CMAKE_BUILD_TYPE STREQUAL Debug
    OR CMAKE_CXX_FLAGS MATCHES "-march=|-mavx")
   set(all_isas_by_default OFF)
 endif()
 option(CSCD_ALL_ISAS "Compile for AVX-512, AVX2 and plain x86-64, and choose at run time" ${all_isas_by_default})
 if(CSCD_ALL_ISAS)
-  if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-    message(FATAL_ERROR "CSCD_ALL_ISAS is for x86-64; configure without it for ${CMAKE_SYSTEM_PROCESSOR}")
+  if(WIN32 OR NOT CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    message(FATAL_ERROR "CSCD_ALL_ISAS is for x86-64 and object files in the format ELF; configure without it for "
+                        "${CMAKE_SYSTEM_NAME} on ${CMAKE_SYSTEM_PROCESSOR}")
   endif()
   if(CSCD_NATIVE OR CMAKE_CXX_FLAGS MATCHES "-march=|-mavx")
     message(FATAL_ERROR "CSCD_ALL_ISAS compiles for each instruction set; configure with it or with one set, not both: "
@@ -61,6 +62,20 @@ function(cscd_room_objects out)
   set(${out} ${objects} PARENT_SCOPE)
 endfunction()
 
+# cscd_room_archives(OUT LIBRARIES ROOM...): the static libraries of rooms, as files and as targets.
+function(cscd_room_archives out libraries)
+  set(found "")
+  foreach(room IN LISTS ARGN)
+    get_target_property(type ${room} TYPE)
+    if(type STREQUAL STATIC_LIBRARY)
+      list(APPEND found ${room})
+    endif()
+  endforeach()
+  set(${libraries} ${found} PARENT_SCOPE)
+  list(TRANSFORM found REPLACE "(.+)" "$<TARGET_FILE:\\1>")
+  set(${out} ${found} PARENT_SCOPE)
+endfunction()
+
 # cscd_compile_for(ISA NAME ROOM...): compiles the sources of rooms once more, for ISA, as the static library NAME.
 function(cscd_compile_for isa name)
   set(sources "")
@@ -80,36 +95,25 @@ function(cscd_compile_for isa name)
   endif()
 endfunction()
 
-# cscd_hide_copy(OUT ISA ENTRY SOURCE ROOM...): links SOURCE, in which the macro CSCD_COPY is ENTRY, and all objects of the rooms
-# to one object that shows the name ENTRY alone. OUT is the object, and ENTRY_object the target that makes it.
+# cscd_hide_copy(OUT ISA ROOM...): links all objects of the rooms to one object that shows the name of make_engine() alone
+# (library/engine/engine.h). OUT is the object, and cscd_copy_ISA_object the target that makes it.
 #
 # The objects are linked from static libraries, because those are files for which each generator has a rule: makefiles have none
 # for the objects of another target.
-function(cscd_hide_copy out isa entry source)
-  add_library(${entry} STATIC ${source})
-  target_compile_definitions(${entry} PRIVATE CSCD_COPY=${entry})
-  target_compile_options(${entry} PRIVATE ${CSCD_OPTIONS_${isa}})
-  target_include_directories(${entry} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/library/include)
-  target_link_libraries(${entry} PRIVATE Eigen3::Eigen cscd_flags)
-  set(libraries ${entry})
-  foreach(room IN LISTS ARGN)
-    get_target_property(type ${room} TYPE)
-    if(type STREQUAL STATIC_LIBRARY)
-      list(APPEND libraries ${room})
-    endif()
-  endforeach()
-  list(TRANSFORM libraries REPLACE "(.+)" "$<TARGET_FILE:\\1>" OUTPUT_VARIABLE archives)
-  set(object ${PROJECT_BINARY_DIR}/${CSCD_CONFIG_FOLDER}${entry}.o)
+function(cscd_hide_copy out isa)
+  cscd_room_archives(archives libraries ${ARGN})
+  set(object ${PROJECT_BINARY_DIR}/${CSCD_CONFIG_FOLDER}cscd_copy_${isa}.o)
+  set(entry _ZN4cscd11make_engineI)  # as compilers spell the beginning of cscd::make_engine<SET>
   # A constructor of a static object would run whatever set is chosen: the last command refuses them.
   add_custom_command(OUTPUT ${object}
     COMMAND ${CSCD_GNU_LINKER} -r --force-group-allocation -o ${object}.whole --whole-archive ${archives}
-    COMMAND ${CMAKE_OBJCOPY} --keep-global-symbol=${entry} ${object}.whole ${object}
+    COMMAND ${CMAKE_OBJCOPY} --wildcard --keep-global-symbol=${entry}* ${object}.whole ${object}
     COMMAND ${CMAKE_COMMAND} -D OBJDUMP=${CMAKE_OBJDUMP} -D OBJECT=${object} -D ENTRY=${entry}
             -P ${PROJECT_SOURCE_DIR}/scripts/cmake/check_copy.cmake
     DEPENDS ${libraries} ${PROJECT_SOURCE_DIR}/scripts/cmake/check_copy.cmake
     VERBATIM COMMENT "Linking the copy for ${isa}")
   # The static and the shared library both take the object, and makefiles would make it for both at once.
-  add_custom_target(${entry}_object DEPENDS ${object})
+  add_custom_target(cscd_copy_${isa}_object DEPENDS ${object})
   set(${out} ${object} PARENT_SCOPE)
 endfunction()
 

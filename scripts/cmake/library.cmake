@@ -9,26 +9,32 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
+# cscd_chooser(NAME ROOM): the objects of the room of the public header's functions, compiled to choose among engines for all
+# instruction sets.
+function(cscd_chooser name room)
+  get_target_property(sources ${room} SOURCES)
+  add_library(${name} OBJECT ${sources} ${PROJECT_SOURCE_DIR}/core/base/instruction_set.cpp)
+  target_compile_definitions(${name} PRIVATE CSCD_ALL_ISAS CSCD_BUILDING)
+  target_include_directories(${name} PRIVATE $<TARGET_PROPERTY:${room},INTERFACE_INCLUDE_DIRECTORIES>)
+  target_link_libraries(${name} PRIVATE Eigen3::Eigen cscd_flags)
+endfunction()
+
 function(cscd_install_library room)
   cscd_rooms_below(rooms "^(core|library)(_|$)" ${room})
   set(copies "")
   if(CSCD_ALL_ISAS)
-    set(copy ${PROJECT_SOURCE_DIR}/library/dispatch/copy.cpp)
-    cscd_hide_copy(objects baseline cscd_copy_baseline ${copy} ${rooms})
+    list(REMOVE_ITEM rooms ${room})
+    cscd_hide_copy(objects baseline ${rooms})
     set(copies cscd_copy_baseline_object)
     foreach(isa IN LISTS CSCD_WIDE_ISAS)
       cscd_compile_for(${isa} cscd_library_${isa} ${rooms})
-      cscd_hide_copy(hidden ${isa} cscd_copy_${isa} ${copy} cscd_library_${isa})
+      cscd_hide_copy(hidden ${isa} cscd_library_${isa})
       list(APPEND objects ${hidden})
       list(APPEND copies cscd_copy_${isa}_object)
     endforeach()
     set_property(GLOBAL PROPERTY cscd_library_rooms ${rooms})  # those are compiled for each set
-    add_library(cscd_dispatch OBJECT ${PROJECT_SOURCE_DIR}/library/dispatch/front.cpp
-                                     ${PROJECT_SOURCE_DIR}/library/standard_library.cpp
-                                     ${PROJECT_SOURCE_DIR}/core/base/instruction_set.cpp)
-    target_include_directories(cscd_dispatch PRIVATE $<TARGET_PROPERTY:${room},INTERFACE_INCLUDE_DIRECTORIES>)
-    target_link_libraries(cscd_dispatch PRIVATE Eigen3::Eigen cscd_flags)
-    list(APPEND objects $<TARGET_OBJECTS:cscd_dispatch>)
+    cscd_chooser(cscd_chooser ${room})
+    list(APPEND objects $<TARGET_OBJECTS:cscd_chooser>)
   else()
     cscd_room_objects(objects ${rooms})
   endif()
@@ -114,14 +120,8 @@ print(*site.getsitepackages(), sep=';', end='|lib/python%d.%d/site-packages' % s
   install(FILES ${scripts} DESTINATION ${destination} COMPONENT python)
 endfunction()
 
-# The examples, a consumer outside the tree, and the pages of the interface, as tests.
-function(cscd_test_library path)
-  # Only a build for all instruction sets links the dispatch, and such a build takes long. Here every build compiles it.
-  add_library(cscd_dispatch_compiles OBJECT ${PROJECT_SOURCE_DIR}/${path}/dispatch/front.cpp
-                                            ${PROJECT_SOURCE_DIR}/${path}/dispatch/copy.cpp)
-  target_compile_definitions(cscd_dispatch_compiles PRIVATE CSCD_COPY=cscd_copy_baseline)
-  target_include_directories(cscd_dispatch_compiles PRIVATE ${PROJECT_SOURCE_DIR})
-  target_link_libraries(cscd_dispatch_compiles PRIVATE cscd::cscd cscd_flags)
+# The examples in C++, as tests.
+function(cscd_library_examples path)
   file(GLOB examples CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/examples/*.cpp)
   foreach(example IN LISTS examples)
     get_filename_component(name ${example} NAME_WE)
@@ -129,6 +129,23 @@ function(cscd_test_library path)
     target_link_libraries(example_${name} PRIVATE cscd::cscd cscd_flags)
     add_test(NAME example_${name} COMMAND example_${name})
   endforeach()
+endfunction()
+
+# The examples, a consumer outside the tree, and the pages of the interface, as tests.
+function(cscd_test_library path)
+  # Only a build for all instruction sets links the choice, and such a build takes long. Here every build compiles it.
+  if(NOT CSCD_ALL_ISAS)
+    cscd_chooser(cscd_chooser library)
+  endif()
+  # Such a build refuses copies that construct objects before main(). So do others, which take part of the time.
+  if(NOT CMAKE_BUILD_TYPE STREQUAL Debug)
+    cscd_rooms_below(rooms "^(core|library)_" library)
+    cscd_room_archives(archives libraries ${rooms})
+    add_test(NAME nothing_is_constructed_before_main COMMAND bash -c
+             "! '${CMAKE_OBJDUMP}' -h \"$@\" | grep -E 'file format| \\.(init_array|ctors)' | grep -B 1 -E 'init_array|ctors'"
+             bash ${archives})
+  endif()
+  cscd_library_examples(${path})
   if(CMAKE_BUILD_TYPE STREQUAL Debug)
     return()  # a library under sanitizers is no use to programs and interpreters without them
   endif()

@@ -8,7 +8,7 @@ function(cscd_wasm_package path room)
   cscd_room_objects(objects ${rooms})
   # What runs once a mesh, or decides the few pairs that no filter decides: the package is to be small.
   foreach(room core_mesh core_elementary core_elementary_exact core_detect_start core_crossing core_radial core_fast_clusters core_fast_prepare
-          library)
+          library library_engine)
     target_compile_options(${room} PRIVATE -Oz)
     set_target_properties(${room} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)  # they are parsed at another level
   endforeach()

@@ -14,9 +14,9 @@ from tracked import tracked_files
 COMPILER = r"""#!/bin/bash
 # COMPILER ARGUMENT...
 case $PWD in */CMakeFiles/CMake*) exec "$@" ;; esac  # CMake tries the compiler itself
-out='' dependencies='' entry=''
+out='' dependencies='' entry=''  # a name that rules look for in the object, another one in each
 while [ $# -gt 0 ]; do
-  case $1 in -o) out=$2 ;; -MF) dependencies=$2 ;; -DCSCD_COPY=*) entry=${1#*=} ;; esac
+  case $1 in -o) out=$2 ;; -MF) dependencies=$2 ;; */prepared_engine.cpp) entry=_ZN4cscd11make_engineI$$ ;; esac
   shift
 done
 [ -z "$dependencies" ] || echo "${out// /\\ }:" >"$dependencies"

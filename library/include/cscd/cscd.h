@@ -16,14 +16,9 @@
 #include <utility>
 #include <vector>
 
+#include "cscd/export.h"
 #include "cscd/matrix_view.h"
 #include "cscd/standard_library.h"
-
-#if defined(__GNUC__)
-#define CSCD_EXPORT __attribute__((visibility("default")))
-#else
-#define CSCD_EXPORT
-#endif
 
 // Continuous self-collision detection of a deforming triangle mesh.
 //
@@ -352,8 +347,9 @@ class CSCD_EXPORT SelfCollision {
   std::size_t face_count() const;
   bool closed() const;  // closed, manifold and consistently oriented
 
+  class Engine;  // what answers; the library alone knows it
+
  private:
-  class Engine;
   std::unique_ptr<Engine> engine_;
 };
 

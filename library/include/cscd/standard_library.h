@@ -2,6 +2,8 @@
 
 #include <version>
 
+#include "cscd/export.h"
+
 // Standard containers, which pass between a program and the library, have another layout with _GLIBCXX_DEBUG,
 // and another one in libc++. A program whose containers differ from the library's would end in undefined
 // behaviour. So each source that includes cscd.h refers to a name that only a library with the same
@@ -15,12 +17,13 @@
 #endif
 
 #if defined(__GNUC__)
-#if __has_attribute(retain)  // the linker then keeps the reference with --gc-sections, too
+#if __has_attribute(retain) && \
+    !defined(_WIN32)  // the linker then keeps the reference with --gc-sections, too
 #define CSCD_RETAINED __attribute__((used, retain))
 #else
 #define CSCD_RETAINED __attribute__((used))
 #endif
-extern "C" __attribute__((visibility("default"))) const char CSCD_CONTAINERS;
+extern "C" CSCD_EXPORT const char CSCD_CONTAINERS;
 namespace cscd {
 CSCD_RETAINED static const char* const containers_of_this_source = &CSCD_CONTAINERS;
 }  // namespace cscd

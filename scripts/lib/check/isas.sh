@@ -17,7 +17,7 @@ install_packages g++ cmake ninja-build libeigen3-dev libboost-dev libgmp-dev lib
 say "build"
 cmake -S "$root" -B "$all" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCSCD_LIBRARY_ONLY=ON >/dev/null
 ninja -C "$all" cscd_static cscd_shared
-digest=$root/library/dispatch/digest.cpp
+digest=$root/library/consumer/digest.cpp
 link() {  # OUT LIBRARY...
   local out=$1
   shift

@@ -20,7 +20,7 @@ install_packages "${packages_build[@]}" "${packages_compare[@]}"
 say "build"
 tests=(core_base core_fast_prepare core_fast_classify core_fast library bench_harness)
 build $build sanitize_threads gcc cscd cscd_static "${tests[@]/%/_test}"
-g++ -std=c++20 -O1 -g -fsanitize=thread -I library/include -isystem /usr/include/eigen3 library/dispatch/digest.cpp \
+g++ -std=c++20 -O1 -g -fsanitize=thread -I library/include -isystem /usr/include/eigen3 library/consumer/digest.cpp \
   $build/libcscd.a -ltbb -o $build/digest
 
 # Without this the script could pass because nothing was watched.

@@ -1,4 +1,4 @@
-#include "library/crossings.h"
+#include "library/engine/crossings.h"
 
 #include <algorithm>
 

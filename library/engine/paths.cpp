@@ -1,4 +1,4 @@
-#include "library/paths.h"
+#include "library/engine/paths.h"
 
 #include <cmath>
 #include <string>

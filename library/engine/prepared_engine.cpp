@@ -1,4 +1,4 @@
-#include "library/engine.h"
+#include "library/engine/prepared_engine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,9 +13,12 @@
 #include "core/fast/drvbc_fast.h"
 #include "core/mesh/mean_edge.h"
 #include "core/session/vertex_bounds.h"
-#include "library/paths.h"
+#include "library/engine/paths.h"
 
 namespace cscd {
+
+using PreparedEngine = SelfCollision::Engine::Prepared;
+
 namespace {
 
 using Positions = SelfCollision::Positions;
@@ -70,7 +73,7 @@ std::array<int, 4> indices_of(const TriangleMesh& mesh, const FeaturePair& pair)
 
 }  // namespace
 
-SelfCollision::Engine::Engine(const Faces& faces, const Positions& reference, Options options)
+PreparedEngine::Prepared(const Faces& faces, const Positions& reference, Options options)
     : options_(std::move(options)),
       reference_(copy_of(rows_of(reference, "reference positions"))),
       mesh_(triangles_of(faces), reference_.size(), "faces"),
@@ -101,22 +104,22 @@ SelfCollision::Engine::Engine(const Faces& faces, const Positions& reference, Op
   plain(first_);
 }
 
-Motion SelfCollision::Engine::motion(const Positions& start, const Positions& end) const {
+Motion PreparedEngine::motion(const Positions& start, const Positions& end) const {
   return {rows_of(start, mesh_.vertex_count(), "start positions"),
           rows_of(end, mesh_.vertex_count(), "end positions")};
 }
 
-std::span<const Vec3> SelfCollision::Engine::pose(const Positions& positions) const {
+std::span<const Vec3> PreparedEngine::pose(const Positions& positions) const {
   const std::span<const Vec3> rows = rows_of(positions, mesh_.vertex_count(), "positions");
   check_finite(rows, "positions");
   return rows;
 }
 
-void SelfCollision::Engine::check_finite(std::span<const Vec3> positions, const std::string& which) const {
+void PreparedEngine::check_finite(std::span<const Vec3> positions, const std::string& which) const {
   if (options_.check_positions) require_finite(positions, which);
 }
 
-void SelfCollision::Engine::move(std::size_t obstacle, const Positions& start, const Positions& end) {
+void PreparedEngine::move(std::size_t obstacle, const Positions& start, const Positions& end) {
   // A caller's -1 is the largest number by the time it is here.
   const std::string name = "obstacle " + std::to_string(static_cast<std::ptrdiff_t>(obstacle));
   const std::size_t count = beside_ ? beside_->first_vertex.size() : 0;
@@ -130,7 +133,7 @@ void SelfCollision::Engine::move(std::size_t obstacle, const Positions& start, c
   obstacles_->move(obstacle, from, to);
 }
 
-void SelfCollision::Engine::step(const Motion& motion, bool first, Session::Sought sought) {
+void PreparedEngine::step(const Motion& motion, bool first, Session::Sought sought) {
   step_itself(first ? first_ : all_, motion, options_.exclude.ongoing ? Session::Sought::contacts : sought);
   if (options_.exclude.ongoing && answer_.start.total > 0) leave_out_ongoing(motion, first);
   if (!obstacles_) return;
@@ -141,13 +144,14 @@ void SelfCollision::Engine::step(const Motion& motion, bool first, Session::Soug
       std::erase_if(*contacts, [&](const cscd::Contact& contact) { return contact.time > *earliest; });
 }
 
-std::optional<double> SelfCollision::Engine::time() const {
+std::optional<double> PreparedEngine::time() const {
   const std::optional<double> own = answer_.time();
   if (touched_.contacts.empty()) return own;
   return std::min(own.value_or(1), touched_.contacts.front().time);
 }
 
-void SelfCollision::Engine::write(const Motion& motion, Answer& out) const {
+void PreparedEngine::contacts(const Motion& motion, bool first, Answer& out) {
+  step(motion, first, Session::Sought::contacts);
   out.start_crossings.clear();
   for (const cscd::Crossings* crossings : {&answer_.start, &crossed_})
     for (const auto& [a, b] : crossings->pairs)
@@ -169,46 +173,43 @@ void SelfCollision::Engine::write(const Motion& motion, Answer& out) const {
 
 // A solver that looks for a free step asks about one start many times. From a start that crosses itself
 // none is free, which is known after the first.
-bool SelfCollision::Engine::is_free(const Motion& motion) {
-  if (same_bits(motion.start(), crossing_start_)) {
-    check_finite(motion.end(), "end positions");
-    return false;
-  }
-  step(motion, true, Session::Sought::any_contact);
-  if (answer_.start.total > 0) crossing_start_ = copy_of(motion.start());
-  return !crosses() && !time();
-}
-
-std::optional<double> SelfCollision::Engine::free_until(const Motion& motion) {
+std::optional<double> PreparedEngine::free_until(const Motion& motion, Session::Sought sought) {
   if (same_bits(motion.start(), crossing_start_)) {
     check_finite(motion.end(), "end positions");
     return 0;
   }
-  step(motion, true, Session::Sought::time);
+  step(motion, true, sought);
   if (answer_.start.total > 0) crossing_start_ = copy_of(motion.start());
-  if (crosses()) return 0;
+  return answer_.start.total + crossed_.total > 0 ? 0 : time();
+}
+
+double PreparedEngine::largest_step(const Positions& start, const Positions& end, double safety) {
+  if (!(safety > 0 && safety <= 1))
+    throw InputError("largest_step: safety " + exact_text(safety) + "; give a number in (0, 1]");
   // The time of a contact is off by at most 2^-50, and the product with a share rounds by less than that.
   constexpr double kSlack = 0x1p-49;
-  const std::optional<double> earliest = time();
-  return earliest ? std::optional(std::max(0.0, *earliest - kSlack)) : std::nullopt;
+  const std::optional<double> touched = free_until(motion(start, end), Session::Sought::time);
+  return touched ? safety * std::max(0.0, *touched - kSlack) : 1.0;
 }
 
-void SelfCollision::Engine::candidates(const Motion& motion, double radius, Candidates& out) {
+SelfCollision::Candidates PreparedEngine::candidates(const Positions& start, const Positions& end,
+                                                     double radius) {
+  const Motion step = motion(start, end);
+  check_finite(step.start(), "start positions");
+  check_finite(step.end(), "end positions");
   if (!(radius >= 0) || !std::isfinite(radius))
     throw InputError("candidates: radius " + exact_text(radius) + "; give a finite length of at least 0");
-  search().find(motion, Thickness(radius), found_);
+  Candidates out;
+  search().find(step, Thickness(radius), found_);
   append(mesh_, out);
-  if (!obstacles_) return;
-  obstacles_->find_candidates(motion, Thickness(radius), found_);
+  if (!obstacles_) return out;
+  obstacles_->find_candidates(step, Thickness(radius), found_);
   append(obstacles_->together(), out);
+  return out;
 }
 
-SelfCollision::Crossings SelfCollision::Engine::crossings(std::span<const Vec3> pose) {
-  return crossing_search().find(pose, exclusions_);
-}
-
-SelfCollision::PathsAnswer SelfCollision::Engine::true_motion(const Paths& paths, double from, double to,
-                                                              double resolution) {
+SelfCollision::PathsAnswer PreparedEngine::true_motion(const Paths& paths, double from, double to,
+                                                       double resolution) {
   if (beside_ || is_thick())
     throw InputError("true_motion: knows no obstacles and no thickness; leave them out");
   return answer_paths(paths, from, to, resolution,
@@ -218,7 +219,8 @@ SelfCollision::PathsAnswer SelfCollision::Engine::true_motion(const Paths& paths
 // The near is found first: it says of most vertices that they get less than the cap, so that farther pairs
 // are looked for, and kept, only where they matter. A wide cap then takes no more memory than a narrow one.
 // Where few vertices are far from everything, their pairs are looked for one by one.
-std::vector<double> SelfCollision::Engine::vertex_bounds(std::span<const Vec3> pose, double cap) {
+std::vector<double> PreparedEngine::vertex_bounds(const Positions& positions, double cap) {
+  const std::span<const Vec3> pose = this->pose(positions);
   if (!(cap >= 0) || !std::isfinite(thickness_.largest() + 4 * cap))
     throw InputError("vertex_bounds: cap " + exact_text(cap) +
                      "; give a length of at least 0 of which twice, with the thickness, is finite");
@@ -241,8 +243,8 @@ std::vector<double> SelfCollision::Engine::vertex_bounds(std::span<const Vec3> p
   }
 }
 
-VertexBounds SelfCollision::Engine::bounds_within(std::span<const Vec3> pose, const std::vector<double>& caps,
-                                                  std::span<const VertexId> far) {
+VertexBounds PreparedEngine::bounds_within(std::span<const Vec3> pose, const std::vector<double>& caps,
+                                           std::span<const VertexId> far) {
   // Pairs farther apart than this stay apart while no vertex moves farther than its cap. The slack exceeds
   // the roundings of the sums.
   const auto reach_of = [&](std::vector<double>& moved) {
@@ -269,7 +271,7 @@ VertexBounds SelfCollision::Engine::bounds_within(std::span<const Vec3> pose, co
   return bounds;
 }
 
-void SelfCollision::Engine::check_labels() const {
+void PreparedEngine::check_labels() const {
   const std::vector<int>& labels = options_.labels;
   if (labels.empty()) return;
   if (labels.size() != mesh_.vertex_count())
@@ -281,7 +283,7 @@ void SelfCollision::Engine::check_labels() const {
                      std::to_string(kMostLabels) + ", such as one for each bone");
 }
 
-Thickness SelfCollision::Engine::checked_thickness() const {
+Thickness PreparedEngine::checked_thickness() const {
   const auto require_length = [](double length, const std::string& name) {
     if (!(length >= 0) || !std::isfinite(length))
       throw InputError("options: " + name + " is " + exact_text(length) +
@@ -300,7 +302,7 @@ Thickness SelfCollision::Engine::checked_thickness() const {
   return Thickness(options_.thickness, by_vertex);
 }
 
-StrategyInput SelfCollision::Engine::setup(bool first, const cscd::Exclusions* exclusions) const {
+StrategyInput PreparedEngine::setup(bool first, const cscd::Exclusions* exclusions) const {
   return {.mesh = mesh_,
           .reference = reference_,
           .rig = nullptr,
@@ -312,8 +314,8 @@ StrategyInput SelfCollision::Engine::setup(bool first, const cscd::Exclusions* e
           .labels = options_.labels};
 }
 
-Session& SelfCollision::Engine::made(std::optional<Session>& wanted, bool first, const Strategy& strategy,
-                                     const cscd::Exclusions* exclusions) {
+Session& PreparedEngine::made(std::optional<Session>& wanted, bool first, const Strategy& strategy,
+                              const cscd::Exclusions* exclusions) {
   if (wanted) return *wanted;
   const SessionOptions options{.first = first,
                                .keep_rest_crossings = true,
@@ -333,24 +335,24 @@ Session& SelfCollision::Engine::made(std::optional<Session>& wanted, bool first,
 //
 // With a thickness, pairs are excluded that are close in every step, such as neighbours, and the one
 // session knows of them.
-Session& SelfCollision::Engine::plain(Question& question) {
+Session& PreparedEngine::plain(Question& question) {
   const bool for_granted =
       !options_.check_start && mesh_.closed_and_oriented() && exclusions_.empty() && !is_thick();
   return made(question.plain, question.first, question.first && for_granted ? kDrvbcFast : kDrvbcFastComplete,
               is_thick() && !exclusions_.empty() ? &exclusions_ : nullptr);
 }
 
-CrossingSearch& SelfCollision::Engine::crossing_search() {
+CrossingSearch& PreparedEngine::crossing_search() {
   if (!crossing_search_) crossing_search_.emplace(mesh_, reference_);
   return *crossing_search_;
 }
 
-CandidateSearch& SelfCollision::Engine::search() {
+CandidateSearch& PreparedEngine::search() {
   if (!search_) search_.emplace(setup(false, exclusions_.empty() ? nullptr : &exclusions_));
   return *search_;
 }
 
-void SelfCollision::Engine::step_itself(Question& question, const Motion& motion, Session::Sought sought) {
+void PreparedEngine::step_itself(Question& question, const Motion& motion, Session::Sought sought) {
   if (question.filtered_steps == 0) {
     plain(question).step(motion, nullptr, answer_, exclusions_.empty() ? sought : Session::Sought::contacts);
     if (exclusions_.empty() || is_thick()) return;
@@ -363,7 +365,7 @@ void SelfCollision::Engine::step_itself(Question& question, const Motion& motion
 }
 
 // Drops what is excluded from the answer, and returns the number of contacts dropped.
-std::size_t SelfCollision::Engine::leave_out() {
+std::size_t PreparedEngine::leave_out() {
   answer_.start.total -= std::erase_if(answer_.start.pairs, [&](const CrossingPair& pair) {
     return exclusions_.excludes(mesh_, TrianglePair{pair.first, pair.second});
   });
@@ -374,7 +376,7 @@ std::size_t SelfCollision::Engine::leave_out() {
 
 // Drops from the answer what lies within overlaps of the start. Where that leaves nothing of the first
 // contact, finds the first of the others among all contacts.
-void SelfCollision::Engine::leave_out_ongoing(const Motion& motion, bool first) {
+void PreparedEngine::leave_out_ongoing(const Motion& motion, bool first) {
   const OverlapPieces pieces = crossing_search().find_pieces(motion.start(), exclusions_);
   const auto leave_out = [&] {
     answer_.start.total -= std::erase_if(answer_.start.pairs, [&](const CrossingPair& pair) {
@@ -390,7 +392,7 @@ void SelfCollision::Engine::leave_out_ongoing(const Motion& motion, bool first) 
   keep_first(answer_.found);
 }
 
-void SelfCollision::Engine::append(const TriangleMesh& mesh, Candidates& out) const {
+void PreparedEngine::append(const TriangleMesh& mesh, Candidates& out) const {
   require_memory(found_.size(), 3 * sizeof(out.edge_edge[0]) * found_.size());
   for (const FeaturePair& pair : found_)
     if (pair.kind == FeaturePair::Kind::vertex_face)
@@ -399,8 +401,8 @@ void SelfCollision::Engine::append(const TriangleMesh& mesh, Candidates& out) co
       out.edge_edge.push_back(indices_of(mesh, pair));
 }
 
-SelfCollision::Contact SelfCollision::Engine::written(const TriangleMesh& mesh, const cscd::Contact& contact,
-                                                      const Motion& motion) const {
+SelfCollision::Contact PreparedEngine::written(const TriangleMesh& mesh, const cscd::Contact& contact,
+                                               const Motion& motion) const {
   const ContactGeometry geometry =
       contact_geometry(mesh, motion, contact.pair, contact.time, thickness_.of(mesh, contact.pair) > 0);
   const bool edges = contact.pair.kind == FeaturePair::Kind::edge_edge;
@@ -412,6 +414,13 @@ SelfCollision::Contact SelfCollision::Engine::written(const TriangleMesh& mesh, 
           geometry.normal.value_or(Vec3::Zero()),
           Eigen::Vector3d(geometry.weights[0], geometry.weights[1], geometry.weights[2]),
           geometry.relative_speed.value_or(0)};
+}
+
+template <>
+std::unique_ptr<SelfCollision::Engine> make_engine<kCompiledFor>(const Faces& faces,
+                                                                 const Positions& reference,
+                                                                 SelfCollision::Options options) {
+  return std::make_unique<PreparedEngine>(faces, reference, std::move(options));
 }
 
 }  // namespace cscd

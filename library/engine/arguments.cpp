@@ -1,4 +1,4 @@
-#include "library/arguments.h"
+#include "library/engine/arguments.h"
 
 #include <string>
 #include <utility>

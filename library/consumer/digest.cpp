@@ -1,4 +1,4 @@
-// Prints a digest of the answers to random steps, bit by bit, and the user time that they took:
+// Prints a digest of the answers to random steps, bit by bit, and the processor time that they took:
 // scripts/check isas compares instruction sets by it, and scripts/check threads numbers of threads.
 //
 //   digest SOUPS STEPS [THREADS]
@@ -11,11 +11,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <exception>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 #include <string_view>
-#include <sys/resource.h>
 
 #include "cscd/cscd.h"
 
@@ -88,13 +89,16 @@ void ask_what_is_wrong(Digest& sum) {
   throw std::runtime_error("a wrong size is taken");
 }
 
-// The C library chooses other code for sine and cosine where a processor lacks FMA, and its last bits differ.
-// Every processor has to be asked about the same positions, so both are rounded to single precision.
+// The last bits of sine and cosine differ among C libraries, and within one where a processor lacks FMA.
+// Everybody has to be asked about the same positions, so both are rounded to 24 places behind the point.
+double rounded(double number) {
+  return std::round(number * 0x1p24) * 0x1p-24;
+}
 double cosine(double turns) {
-  return static_cast<float>(std::cos(2 * M_PI * turns));
+  return rounded(std::cos(2 * std::numbers::pi * turns));
 }
 double sine(double turns) {
-  return static_cast<float>(std::sin(2 * M_PI * turns));
+  return rounded(std::sin(2 * std::numbers::pi * turns));
 }
 
 // A closed ring of `around` by `along` quads, two triangles each, which bends to an eight as `phase` grows.
@@ -126,10 +130,8 @@ void ask_ring(int steps, const SelfCollision::Options& options, Digest& sum) {
     sum.ask(body, ring(kAround, kAlong, double(i) / steps), ring(kAround, kAlong, double(i + 1) / steps));
 }
 
-double user_ms() {
-  rusage used{};
-  getrusage(RUSAGE_SELF, &used);
-  return 1e3 * double(used.ru_utime.tv_sec) + 1e-3 * double(used.ru_utime.tv_usec);
+double processor_ms() {
+  return 1e3 * double(std::clock()) / CLOCKS_PER_SEC;
 }
 
 }  // namespace
@@ -140,11 +142,12 @@ int main(int count, char** words) try {
   Digest sum;
   ask_what_is_wrong(sum);
   ask_soups(count > 1 ? std::atoi(words[1]) : 100, options, sum);
-  const double soups = user_ms();
+  const double soups = processor_ms();
   ask_ring(count > 2 ? std::atoi(words[2]) : 10, options, sum);
   std::printf("%016llx, %zu contacts\n", static_cast<unsigned long long>(sum.hash), sum.contacts);
   const std::string_view set = cscd::instruction_set();
-  std::fprintf(stderr, "%.*s: %.0f ms and %.0f ms\n", int(set.size()), set.data(), soups, user_ms() - soups);
+  std::fprintf(stderr, "%.*s: %.0f ms and %.0f ms\n", int(set.size()), set.data(), soups,
+               processor_ms() - soups);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "digest: %s\n", error.what());

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,45 +15,45 @@
 #include "core/session/obstacles.h"
 #include "core/session/session.h"
 #include "core/session/vertex_bounds.h"
-#include "library/arguments.h"
-#include "library/crossings.h"
+#include "library/engine/arguments.h"
+#include "library/engine/crossings.h"
+#include "library/engine/engine.h"
 
 #include "cscd/cscd.h"
 
 namespace cscd {
 
-// What a SelfCollision holds: its mesh, what it was told of it, and the searches that answer its questions.
-// One thread asks at a time. Errors of the input are InputError.
-class SelfCollision::Engine {
+// An engine that holds a mesh, what it was told of it, and the searches that answer its questions.
+class SelfCollision::Engine::Prepared final : public SelfCollision::Engine {
  public:
-  std::atomic<const void*> asked_by = nullptr;  // the thread whose call is being answered (this_thread())
+  Prepared(const Faces& faces, const Positions& reference, Options options);
 
-  Engine(const Faces& faces, const Positions& reference, Options options);
-
-  const TriangleMesh& mesh() const { return mesh_; }
-  std::vector<std::byte> preparation() const { return first_.plain->saved_preparation(); }
-
-  // The positions as they lie in the caller's memory. Sessions look for numbers that are not finite, in the
-  // pass in which they look whether a start is known; for other questions, check_finite() does.
-  Motion motion(const Positions& start, const Positions& end) const;
-  std::span<const Vec3> pose(const Positions& positions) const;
-  void check_finite(std::span<const Vec3> positions, const std::string& which) const;
-
-  void move(std::size_t obstacle, const Positions& start, const Positions& end);
-
-  // Answers one step. The answer is kept until the next.
-  void step(const Motion& motion, bool first, Session::Sought sought = Session::Sought::contacts);
-  bool crosses() const { return answer_.start.total + crossed_.total > 0; }
-  std::optional<double> time() const;  // of the first contact
-  void write(const Motion& motion, Answer& out) const;
-
-  bool is_free(const Motion& motion);
-  // Returns the time up to which nothing touches, 0 if something crosses at the start; null if nothing does.
-  std::optional<double> free_until(const Motion& motion);
-  void candidates(const Motion& motion, double radius, Candidates& out);
-  SelfCollision::Crossings crossings(std::span<const Vec3> pose);
-  PathsAnswer true_motion(const Paths& paths, double from, double to, double resolution);
-  std::vector<double> vertex_bounds(std::span<const Vec3> pose, double cap);
+  void place_obstacle(std::size_t obstacle, const Positions& positions) override {
+    move(obstacle, positions, positions);
+  }
+  void move_obstacle(std::size_t obstacle, const Positions& start, const Positions& end) override {
+    move(obstacle, start, end);
+  }
+  bool is_free(const Positions& start, const Positions& end) override {
+    return !free_until(motion(start, end), Session::Sought::any_contact);
+  }
+  void first_contact(const Positions& start, const Positions& end, Answer& out) override {
+    contacts(motion(start, end), true, out);
+  }
+  void all_contacts(const Positions& start, const Positions& end, Answer& out) override {
+    contacts(motion(start, end), false, out);
+  }
+  double largest_step(const Positions& start, const Positions& end, double safety) override;
+  Candidates candidates(const Positions& start, const Positions& end, double radius) override;
+  std::vector<double> vertex_bounds(const Positions& positions, double cap) override;
+  SelfCollision::Crossings crossings(const Positions& positions) override {
+    return crossing_search().find(pose(positions), exclusions_);
+  }
+  PathsAnswer true_motion(const Paths& paths, double from, double to, double resolution) override;
+  std::vector<std::byte> preparation() const override { return first_.plain->saved_preparation(); }
+  std::size_t vertex_count() const override { return mesh_.vertex_count(); }
+  std::size_t face_count() const override { return mesh_.triangle_count(); }
+  bool closed() const override { return mesh_.closed_and_oriented(); }
 
  private:
   // The sessions that answer one question. Each is prepared when it is asked for first. `plain` knows of no
@@ -66,6 +65,12 @@ class SelfCollision::Engine {
     std::optional<Session> plain = std::nullopt, filtered = std::nullopt;
     int filtered_steps = 0;  // the number of steps from here on that `filtered` answers alone
   };
+
+  // The positions as they lie in the caller's memory. Sessions look for numbers that are not finite, in the
+  // pass in which they look whether a start is known; for other questions, check_finite() does.
+  Motion motion(const Positions& start, const Positions& end) const;
+  std::span<const Vec3> pose(const Positions& positions) const;
+  void check_finite(std::span<const Vec3> positions, const std::string& which) const;
 
   void check_labels() const;
   Thickness checked_thickness() const;
@@ -82,6 +87,16 @@ class SelfCollision::Engine {
   // `far` are no longer than they have to be for a search by culling; those of others may have any length.
   VertexBounds bounds_within(std::span<const Vec3> pose, const std::vector<double>& caps,
                              std::span<const VertexId> far);
+
+  void move(std::size_t obstacle, const Positions& start, const Positions& end);
+
+  // Answers one step. The answer is kept until the next.
+  void step(const Motion& motion, bool first, Session::Sought sought);
+  std::optional<double> time() const;  // of the first contact
+  void contacts(const Motion& motion, bool first, Answer& out);
+  // Returns the time of a contact, the first one if that is `sought`; 0 if something crosses at the start;
+  // null if nothing does.
+  std::optional<double> free_until(const Motion& motion, Session::Sought sought);
 
   void step_itself(Question& question, const Motion& motion, Session::Sought sought);
   std::size_t leave_out();
@@ -105,7 +120,7 @@ class SelfCollision::Engine {
   cscd::Crossings crossed_;  // of the mesh and obstacles
   std::vector<FeaturePair> found_;
   std::optional<CrossingSearch> crossing_search_;
-  // The last one that is_free() or free_until() met.
+  // The last one that free_until() met.
   std::vector<Vec3> crossing_start_;
 };
 
