@@ -9,8 +9,10 @@
 #include <string>
 #ifndef __wasm__
 #include <fstream>
+#if __has_include(<sys/resource.h>)
 #include <sys/resource.h>
 #include <unistd.h>
+#endif
 #endif
 
 namespace cscd {
@@ -56,10 +58,13 @@ std::uint64_t left_by_machine() {
 }
 
 std::uint64_t left_of_address_space() {
+#ifdef RLIMIT_AS
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kNoLimit;
   const auto pages = number_of(text_of("/proc/self/statm"));
-  return pages ? less(limit.rlim_cur, *pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE))) : kNoLimit;
+  if (pages) return less(limit.rlim_cur, *pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)));
+#endif
+  return kNoLimit;
 }
 
 // The names of version 1 and 2 of control groups. Files that are cached count as used by the group, and the

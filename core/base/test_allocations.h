@@ -15,13 +15,21 @@ std::atomic<std::size_t> g_failing = 0;  // the number of the allocation that fa
 void* allocate(std::size_t bytes, std::size_t alignment) {
   if (++g_allocations == g_failing) throw std::bad_alloc();
   const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
-  if (void* memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded)) return memory;
-  throw std::bad_alloc();
+#if defined(_WIN32)
+  void* const memory = _aligned_malloc(rounded, alignment);
+#else
+  void* const memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);
+#endif
+  return memory != nullptr ? memory : throw std::bad_alloc();
 }
 
 // Apart, because gcc takes memory from operator new that free() gets for an error once it sees both.
 __attribute__((noinline)) void release(void* memory) {
+#if defined(_WIN32)
+  _aligned_free(memory);
+#else
   std::free(memory);
+#endif
 }
 
 }  // namespace

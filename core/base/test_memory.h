@@ -2,13 +2,15 @@
 
 #include <cstddef>
 #include <fstream>
+#if __has_include(<sys/resource.h>)
 #include <sys/resource.h>
 #include <unistd.h>
+#endif
 
 namespace cscd::test {
 
-// Sanitizers take address space without end.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+// Sanitizers take address space without end, and Windows limits none.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(_WIN32)
 inline constexpr bool kMemoryCanBeLimited = false;
 #else
 inline constexpr bool kMemoryCanBeLimited = true;
@@ -17,6 +19,11 @@ inline constexpr bool kMemoryCanBeLimited = true;
 // Leaves this process so many bytes more of address space than it has now, for as long as the object lives.
 class MemoryLimit {
  public:
+  MemoryLimit(const MemoryLimit&) = delete;
+  MemoryLimit& operator=(const MemoryLimit&) = delete;
+#if defined(_WIN32)
+  explicit MemoryLimit(std::size_t) {}
+#else
   explicit MemoryLimit(std::size_t bytes) {
     std::size_t pages = 0;
     std::ifstream("/proc/self/statm") >> pages;
@@ -25,12 +32,13 @@ class MemoryLimit {
     limit.rlim_cur = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE)) + bytes;
     setrlimit(RLIMIT_AS, &limit);
   }
-  ~MemoryLimit() { setrlimit(RLIMIT_AS, &before_); }
-  MemoryLimit(const MemoryLimit&) = delete;
-  MemoryLimit& operator=(const MemoryLimit&) = delete;
+  ~MemoryLimit() {
+    setrlimit(RLIMIT_AS, &before_);
+  }
 
  private:
   rlimit before_{};
+#endif
 };
 
 }  // namespace cscd::test

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cscd/cscd.h>
 #include <iostream>
+#include <numbers>
 #include <vector>
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 int main() {
@@ -21,7 +22,8 @@ int main() {
     x.row(top) = middle + Eigen::RowVector3d(0, 0, 1), x.row(bottom) = middle - Eigen::RowVector3d(0, 0, 1);
     for (int r = 0; r <= rings; ++r)
       for (int k = 0; k < around; ++k) {
-        const double u = M_PI * ((r + 1.0) / (rings + 1) - 0.5), w = 2 * M_PI * k / around;
+        const double u = std::numbers::pi * ((r + 1.0) / (rings + 1) - 0.5),
+                     w = 2 * std::numbers::pi * k / around;
         springs.emplace_back(at(r - 1, k), at(r, k));
         if (r > 0) faces.row(f++) << at(r - 1, k), at(r - 1, k + 1), at(r, k);
         if (r == rings) continue;

@@ -15,14 +15,14 @@ namespace {
 
 // The double mantissa * 2^exponent. The mantissa is odd, or zero.
 struct Scaled {
-  long mantissa = 0;
+  std::int64_t mantissa = 0;
   int exponent = 0;
 };
 
 Scaled scaled(double x) {
   if (x == 0) return {};
   Scaled result;
-  result.mantissa = static_cast<long>(std::ldexp(std::frexp(x, &result.exponent), 53));
+  result.mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &result.exponent), 53));
   result.exponent -= 53;
   while (result.mantissa % 2 == 0) {
     result.mantissa /= 2;
