@@ -6,8 +6,9 @@
 
 Work is done in a folder for temporary files, and nothing is written into the sources.
 
-Compiling needs Debian's cmake, g++, libeigen3-dev, libboost-dev, libtbb-dev, pybind11-dev and python3-dev. The wheel uses the
-oneTBB of the machine, so it is for systems like the one that made it.
+Compiling needs Debian's cmake, g++, libeigen3-dev, libboost-dev, pybind11-dev and python3-dev. The wheel takes no oneTBB, so it needs
+nothing of a system but Python, numpy and the C++ runtime, and answers on the calling thread. A wheel from a build folder needs what that
+build links.
 """
 import atexit
 import os
@@ -58,6 +59,7 @@ class ByCMake(build_ext):
         build = GIVEN or WORK / "cmake"
         if not GIVEN:
             subprocess.run(["cmake", "-S", ROOT, "-B", build, "-DCSCD_LIBRARY_ONLY=ON", "-DCMAKE_BUILD_TYPE=Release",
+                            "-DCMAKE_DISABLE_FIND_PACKAGE_TBB=ON",
                             f"-DPYTHON_EXECUTABLE={sys.executable}"], check=True)
             subprocess.run(["cmake", "--build", build, "--target", "cscd_python", "--parallel", str(os.cpu_count())], check=True)
         subprocess.run(["cmake", f"-DCMAKE_INSTALL_PREFIX={pathlib.Path(self.build_lib).resolve()}",
