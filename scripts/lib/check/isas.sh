@@ -12,7 +12,7 @@ all=$root/build-isas
 
 echo "Installs qemu-user where it is missing; builds the library for three instruction sets, which takes about 10 minutes on 2 idle cores."
 say "packages"
-install_packages g++ cmake ninja-build libeigen3-dev libboost-dev libgmp-dev libtbb-dev qemu-user
+install_packages g++ cmake ninja-build libeigen3-dev libboost-dev libtbb-dev qemu-user
 
 say "build"
 cmake -S "$root" -B "$all" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCSCD_LIBRARY_ONLY=ON >/dev/null
