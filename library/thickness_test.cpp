@@ -61,7 +61,8 @@ TEST(Thickness, SaysSoBeforePairsTakeMoreMemoryThanThereIs) {
   const std::string contacts = refused([&] { body.all_contacts(pose, pose); }),
                     candidates = refused([&] { body.candidates(pose, pose, 4 * kFar); });
   for (const std::string& why : {contacts, candidates}) {
-    EXPECT_NE(why.find(" pairs of features are near enough so far, and going on takes "), std::string::npos)
+    EXPECT_TRUE(why.find(" pairs of features are near enough so far, and going on takes ") != why.npos ||
+                why.starts_with("testing the pairs of features that may be near takes "))
         << why;
     EXPECT_NE(why.find("give a smaller thickness or radius"), std::string::npos) << why;
   }

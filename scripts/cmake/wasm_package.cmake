@@ -12,6 +12,10 @@ function(cscd_wasm_package path room)
     target_compile_options(${room} PRIVATE -Oz)
     set_target_properties(${room} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)  # they are parsed at another level
   endforeach()
+  foreach(file session known_starts obstacles true_motion interval_verdict)
+    set_source_files_properties(core/session/${file}.cpp TARGET_DIRECTORY core_session PROPERTIES COMPILE_OPTIONS -Oz
+      SKIP_PRECOMPILE_HEADERS ON)
+  endforeach()
   set(folder ${PROJECT_SOURCE_DIR}/${path})
   set(package ${PROJECT_BINARY_DIR}/js)
   add_executable(cscd_wasm ${folder}/bindings.cpp ${folder}/runtime.cpp ${objects})

@@ -56,7 +56,7 @@ def commands_of(text):
             found.append(re.split(r" {2,}(?!&&)", line.strip())[0].split("  #")[0])
         else:
             found += re.findall(r"`([^`]+)`", line)
-    return [command for command in dict.fromkeys(found) if re.match(START, command)]
+    return [command for command in dict.fromkeys(found) if re.match(START, command) and not (ROOT / command.split()[0]).is_dir()]
 
 
 def why_not(command):

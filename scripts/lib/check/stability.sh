@@ -28,7 +28,7 @@ part ties core/elementary/certified/close_integers
 part lanes core/elementary/certified/exact_lanes
 part single core/detect/single_filter
 part distance core/detect/distance_filter
-part exact core/elementary/exact/{exact,algebraic,closeness,polynomial,touch}
+part exact core/elementary/exact/{exact,algebraic,closeness,integer,polynomial,touch}
 part starts core/elementary/exact/static_contact
 part meshes core/detect/{double_filter,carried_pairs,compose,contact,feature_owners,filter_block,no_contact_before} \
   core/mesh/triangle_mesh core/geometry/feature_distance
