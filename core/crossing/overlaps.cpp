@@ -305,8 +305,8 @@ class PoseOverlaps {
     if (region.other_is_open && region.own == region.other) region.depth.lower = 0;
   }
 
-  // Takes the middle of a part of an edge into account that starts or ends in a tie. It may lie on the other
-  // component, in it, or outside of it.
+  // Takes into account the middle of a part of an edge, one end of which is a tie. The middle may lie on the
+  // other component, in it, or outside of it.
   void deepen_tied(CrossingDepth& depth, const Vec3& middle, std::int32_t own, std::int32_t other) {
     if (own == other || parts_->marks().is_open[index(other)]) return;
     const SheetDistance::Nearest nearest = to_component(other).nearest(middle, depth.lower);

@@ -18,11 +18,6 @@ namespace cscd {
 // The pairs of triangles that are near each other in one pose, the *anchor*. While the surface stays near the
 // anchor, all others are apart, so that a small step costs little more than a look at its positions
 // (core/soundness.md, "Theorem: small steps near an anchor").
-//
-// Let every vertex, less one shift of the whole surface, lie within m of its place in the anchor at both ends
-// of a step. Vertices move in straight lines, so the vertex lies within m of that place at every time, and
-// features that are d apart in the anchor stay at least d - 2 m apart. Most pairs of the list are told apart
-// by what their own six vertices have moved against each other.
 class NearPairs {
  public:
   // `reference`, [vertices], is any pose. The mesh and what the thickness refers to must outlive the object.
@@ -38,8 +33,8 @@ class NearPairs {
   // Makes the start of such a step the anchor, and lets a detector of a complete strategy find what is near
   // there. Returns whether the list covers the step.
   bool anchor(const Motion& motion, Detector& detector);
-  // Adds to the sink the listed pairs that are not proven apart during the step that was found to
-  // be covered last.
+  // Adds to the sink the listed pairs that are not proven apart during the step that covers() or anchor()
+  // accepted last. Most are told apart by what their own six vertices have moved against each other.
   void pass_on(const Motion& motion, TrianglePairSink& sink) const;
   // How many poses have been anchors.
   std::size_t anchors() const { return anchors_; }
@@ -70,8 +65,10 @@ class NearPairs {
   double most_room_ = 0;             // how far beyond the thickness the next list may reach
   std::size_t worth_ = 0;   // how many pairs a list may hold, by the last step that a strategy answered
   std::size_t served_ = 0;  // steps that the anchor has covered
-  std::size_t waits_ = 0, next_wait_ = 0;  // steps until another anchor is made,
-  double waits_for_ = 0;                   // if they are not far shorter than this
+  // After an anchor that covered too few steps, so many steps go by before the next one, unless steps are far
+  // shorter than those that the anchor did not last for.
+  std::size_t waits_ = 0, next_wait_ = 0;
+  double waits_for_ = 0;
   std::size_t anchors_ = 0;
 };
 
