@@ -15,8 +15,6 @@ namespace {
 // What crosses at rest and bends is a little deeper in most poses: up to this factor, it is as deep as at
 // rest.
 constexpr double kDeeper = 1.1;
-// Depths below this share of the largest coordinate are nothing but rounding.
-constexpr double kRounding = 1e-12;
 
 CrossingPair pair_of(const std::array<TriangleId, 2>& segment) {
   return std::minmax(segment[0], segment[1]);
@@ -161,7 +159,7 @@ void OverlapEvents::tell_crossing_pieces(std::span<const Vec3> start, Overlaps& 
   for (const Vec3& x : start) largest = std::max(largest, x.cwiseAbs().maxCoeff());
   std::vector<CrossingPair> crossing = answer.start.pairs;
   for (Overlap& overlap : all.overlaps) {
-    if (overlap.depth.lower <= kRounding * largest) overlap.depth.lower = 0;
+    if (overlap.depth.lower <= kOnSheet * largest) overlap.depth.lower = 0;
     std::vector<CrossingPair> pairs;
     for_each_segment(all.crossing, overlap, [&](const auto& segment) { pairs.push_back(pair_of(segment)); });
     const auto crosses = [&](const CrossingPair& pair) { return answer.start.contains(pair); };

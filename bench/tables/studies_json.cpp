@@ -162,7 +162,10 @@ json growth_json(const json& record) {
                       {"scene", fit.at("scene")},
                       {"strategy", fit.at("strategy")},
                       {"exponent", fit.at("exponent")}});
-  return {{"points", std::move(points)}, {"fits", std::move(fits)}, {"shortfalls", std::move(shortfalls)}};
+  return {{"points", std::move(points)},
+          {"fits", std::move(fits)},
+          {"shortfalls", std::move(shortfalls)},
+          {"shortfall_meaning", kShortfallMeaning}};
 }
 
 }  // namespace cscd::bench

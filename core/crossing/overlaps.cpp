@@ -24,9 +24,6 @@ constexpr std::int32_t kNone = -1;
 // its smallest triangles, neither overflow nor vanish.
 constexpr double kSmallestPose = 0x1p-60, kLargestPose = 0x1p60;
 
-// What is nearer to a sheet than this share of the largest coordinate may lie on it, but for rounding.
-constexpr double kOnSheet = 1e-12;
-
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }

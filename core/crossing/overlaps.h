@@ -12,6 +12,9 @@
 
 namespace cscd {
 
+// What is nearer to a sheet than this share of the largest coordinate may lie on it, but for rounding.
+inline constexpr double kOnSheet = 1e-12;
+
 // How deep a region lies beyond the other sheet.
 struct CrossingDepth {
   // The largest distance to the other sheet, up to rounding, of a vertex or of a point between two piercings

@@ -46,7 +46,8 @@ double rounded_up(double length) {
   return std::max(length, kTiny) * (1 + 16 * kUnitRoundoff);
 }
 
-Vec3 mean_way(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const std::size_t> sample) {
+Vec3 mean_displacement(std::span<const Vec3> from, std::span<const Vec3> to,
+                       std::span<const std::size_t> sample) {
   Vec3 sum = Vec3::Zero();
   for (const std::size_t v : sample) sum += to[v] - from[v];
   return sum / static_cast<double>(sample.size());
@@ -132,10 +133,10 @@ NearPairs::NearPairs(const TriangleMesh& mesh, std::span<const Vec3> reference, 
   for (std::size_t i = 0; i < count; ++i) sample_.push_back(i * mesh.vertex_count() / count);
 }
 
-// The way of the sample within one step, less its mean. No bound: it spares large steps a look at all
-// vertices.
+// The displacement of the sample within one step, less its mean. No bound: it spares large steps a look at
+// all vertices.
 double NearPairs::sampled_length(const Motion& motion) const {
-  const Vec3 mean = mean_way(motion.start(), motion.end(), sample_);
+  const Vec3 mean = mean_displacement(motion.start(), motion.end(), sample_);
   double longest = 0;
   for (const std::size_t v : sample_)
     longest = std::max(longest, (motion.end()[v] - motion.start()[v] - mean).squaredNorm());
@@ -148,14 +149,14 @@ double NearPairs::moved(const Motion& motion, std::span<const Vec3> from, double
   double longest = 0;
   for (std::size_t end = 0; end < 2; ++end) {
     const std::span<const Vec3> to = end == 0 ? motion.start() : motion.end();
-    const Vec3 shift = mean_way(from, to, sample_);
+    const Vec3 shift = mean_displacement(from, to, sample_);
     Vec3 largest = Vec3::Zero();
     for (std::size_t first = 0; first < from.size(); first += kBlock) {
       const std::size_t last = std::min(first + kBlock, from.size());
       for (std::size_t v = first; v < last; ++v) {
-        const Vec3 way = to[v] - from[v];
-        largest = largest.cwiseMax(way.cwiseAbs());
-        longest = std::max(longest, (way - shift).squaredNorm());
+        const Vec3 displacement = to[v] - from[v];
+        largest = largest.cwiseMax(displacement.cwiseAbs());
+        longest = std::max(longest, (displacement - shift).squaredNorm());
       }
       if (!(std::sqrt(longest) <= enough)) return kInfinite;
     }
@@ -236,9 +237,9 @@ void NearPairs::pass_on(const Motion& motion, TrianglePairSink& sink) const {
       const Vec3 own = to[+a[0]] - anchor_[+a[0]];
       double of_a = 0, of_b = 0, largest = own.cwiseAbs().maxCoeff();
       const auto look = [&](VertexId v, double& most_moved) {
-        const Vec3 way = to[+v] - anchor_[+v];
-        largest = std::max(largest, way.cwiseAbs().maxCoeff());
-        most_moved = std::max(most_moved, (way - own).squaredNorm());
+        const Vec3 displacement = to[+v] - anchor_[+v];
+        largest = std::max(largest, displacement.cwiseAbs().maxCoeff());
+        most_moved = std::max(most_moved, (displacement - own).squaredNorm());
       };
       look(a[1], of_a), look(a[2], of_a);
       for (const VertexId v : b) look(v, of_b);

@@ -10,8 +10,8 @@ from script import ROOT, refuse
 from tracked import git, is_checkout, tracked_files
 
 RESULTS = ROOT / "results"
-KINDS = ("full", "starts", "cloth", "real", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "thickness", "motion", "latency", "waits")
-PAGES = ("tables.md", "claims.md", "accuracy.md", "scale.md", "benchmark.md", "motion.md", "latency.md", "waits.md", "notes.md")
+KINDS = ("full", "starts", "cloth", "real", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "thickness", "motion", "sets", "latency", "waits")
+PAGES = ("tables.md", "claims.md", "accuracy.md", "scale.md", "benchmark.md", "motion.md", "sets.md", "latency.md", "waits.md", "notes.md")
 HEAD = """# Records
 
 Made by `scripts/pages` from the records themselves. A folder is named by its date, its machine, its commit
@@ -28,6 +28,7 @@ and its kind.
 | scale, scale-largest, scale-contacts | `scripts/record scale`; with `--largest`; `cscd scale --study contacts` | how cost grows with triangles, steps, bones, threads, contacts |
 | thickness | `scripts/record thickness --real DIR` | what it costs that features count which come within a distance |
 | motion | `scripts/record motion DIR` | where the true motion of characters differs from straight lines, and what it costs to ask |
+| sets | `scripts/record sets` | what the instruction set costs: AVX-512, AVX2, SSE2 and WebAssembly in Node |
 | latency; at first waits | `scripts/record latency BASE` | preparation, all contacts, contacts, long steps and threads, before and after |
 
 The newest record of each kind is here. A record (`*.json.gz`) is never rewritten after its day; whatever is found out later stands

@@ -350,7 +350,7 @@ def mark_part(record):
             lines += [f"- {where}: {', '.join(rows)}"] if rows else []
     if not lines:
         return []
-    return [f"## What {MARK} stands for", "", f"{MARK} The row does not answer everything that a complete row answers, so its time is not for the same work. A "
+    return [f"## What {MARK} stands for", "", f"{record.shortfall_meaning}. A "
             "promise is void on an interval whose start is not embedded: the surface crosses itself there, or with a thickness, something is close.",
             "", *lines, ""]
 

@@ -9,6 +9,7 @@ class Record:
     def __init__(self, path, program):
         growth = study_of(program, path, "growth")
         self.raw = record = read_json(path)
+        self.shortfall_meaning = growth["shortfall_meaning"].replace("*", MARK)
         for subject, steps in zip(record["subjects"], growth["shortfalls"]):
             for step, lacking in zip(subject["steps"], steps):
                 step["lacking"] = lacking

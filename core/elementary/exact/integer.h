@@ -5,10 +5,6 @@
 // taken to be included.
 #include <istream>
 #include <ostream>
-// Boost 1.74 names std::unary_function, which libc++ no longer has.
-#if defined(_LIBCPP_VERSION) && !defined(BOOST_NO_CXX98_FUNCTION_BASE)
-#define BOOST_NO_CXX98_FUNCTION_BASE
-#endif
 #ifdef _GLIBCXX_IOSTREAM
 #include <boost/multiprecision/cpp_int.hpp>
 #else

@@ -6,8 +6,9 @@ import init, { SelfCollision } from "cscd";
 const file = readFileSync(process.argv[2]);
 const bytes = file.buffer.slice(file.byteOffset, file.byteOffset + file.length);
 const [faceCount, vertexCount, stepCount] = new Int32Array(bytes, 0, 3);
-const faces = new Uint32Array(bytes, 16, 3 * faceCount);
-const first = 16 + 12 * faceCount + 4 * (faceCount % 2), size = 24 * vertexCount;
+const [thickness] = new Float64Array(bytes, 16, 1);
+const faces = new Uint32Array(bytes, 24, 3 * faceCount);
+const first = 24 + 12 * faceCount + 4 * (faceCount % 2), size = 24 * vertexCount;
 const steps = Array.from({ length: stepCount }, (_, i) =>
   [0, 1].map((end) => new Float64Array(bytes, first + size * (2 * i + end), 3 * vertexCount)));
 
@@ -43,6 +44,9 @@ const body = new SelfCollision(faces, steps[0][0]);
 ask("first contact", steps, (start, end) => body.firstContact(start, end), addAnswer);
 ask("all contacts", steps, (start, end) => body.allContacts(start, end), addAnswer);
 ask("largest step", steps, (start, end) => body.largestStep(start, end), (share) => add(Float64Array, [share]));
+const thick = new SelfCollision(faces, steps[0][0], { thickness });
+ask("all contacts, with a thickness", steps, (start, end) => thick.allContacts(start, end), addAnswer);
+thick.dispose();
 ask("candidates", steps.slice(-3), (start, end) => body.candidates(start, end, 0),
   (near) => { addSorted(near.vertexFace, 2), addSorted(near.edgeEdge, 4); });
 ask("vertex bounds", steps.slice(-3), (start) => body.vertexBounds(start, 0.01), (bounds) => add(Float64Array, bounds));

@@ -7,8 +7,8 @@
 After the pass that makes the digest, each question is asked in so many passes. Its time is the median over steps of the least
 processor time that a step took, in milliseconds.
 
-digest.mjs prints the same for the package. The file holds the numbers of faces, of vertices and of steps, the faces, and the start and
-the end of each step.
+digest.mjs prints the same for the package. The file holds the numbers of faces, of vertices and of steps, a thickness, the faces, and
+the start and the end of each step.
 """
 import hashlib
 import json
@@ -34,8 +34,11 @@ def write(path, program, scene, begin, end):
             # A scene's steps may end where its characters would have gone, before contacts are resolved.
             ends = file["predicted"][int(begin):int(end)] if "predicted" in file else frames[1:]
     steps = np.stack([frames[:-1], ends], axis=1)
+    sides = frames[0][faces] - frames[0][np.roll(faces, 1, axis=1)]
+    thickness = 0.1 * np.linalg.norm(sides, axis=2).mean()  # a tenth of an edge
     with open(path, "wb") as file:
         np.array([len(faces), frames.shape[1], len(steps), 0], "<i4").tofile(file)
+        np.array([thickness], "<f8").tofile(file)
         faces.astype("<i4").tofile(file)
         if len(faces) % 2:  # doubles begin at a multiple of their size
             np.zeros(1, "<i4").tofile(file)
@@ -45,15 +48,16 @@ def write(path, program, scene, begin, end):
 def read(path):
     with open(path, "rb") as file:
         faces, vertices, steps, _ = np.fromfile(file, "<i4", 4)
+        thickness = np.fromfile(file, "<f8", 1)[0]
         corners = np.fromfile(file, "<i4", 3 * faces).reshape(-1, 3)
         file.seek(4 * (faces % 2), 1)
-        return corners, np.fromfile(file, "<f8", steps * vertices * 6).reshape(steps, 2, vertices, 3)
+        return corners, thickness, np.fromfile(file, "<f8", steps * vertices * 6).reshape(steps, 2, vertices, 3)
 
 
 def main(path, passes, *clip):
     if clip:
         write(path, *clip)
-    faces, steps = read(path)
+    faces, thickness, steps = read(path)
     digest, times, contacts = hashlib.sha256(), {}, 0
 
     def add(array, kind):
@@ -88,6 +92,8 @@ def main(path, passes, *clip):
     ask("first contact", steps, body.first_contact, add_answer)
     ask("all contacts", steps, body.all_contacts, add_answer)
     ask("largest step", steps, body.largest_step, lambda share: add([share], "<f8"))
+    thick = cscd.SelfCollision(faces, steps[0, 0], thickness=thickness)
+    ask("all contacts, with a thickness", steps, thick.all_contacts, add_answer)
     ask("candidates", steps[-3:], lambda start, end: body.candidates(start, end, 0.0), add_pairs)
     ask("vertex bounds", steps[-3:], lambda start, end: body.vertex_bounds(start, 0.01), lambda bounds: add(bounds, "<f8"))
     ask("prepare", [(faces, steps[0, 0])], cscd.SelfCollision, lambda body: None)

@@ -1,16 +1,14 @@
 #!/bin/bash
 # Builds the npm package of library/js for WebAssembly, and tests it in Node and in Chromium.
 #
-#   scripts/check wasm [BUILD [--all | --times]]
+#   scripts/check wasm [BUILD [--all]]
 #
 # BUILD is a folder with a build of the whole project. With it, the package and the library of BUILD have to give the same
-# answers to some steps of two scenes, bit by bit; with --all, to all steps of all scenes. With --times, a library for SSE2 is built, too,
-# and both are asked about 60 steps of each of the paper's scenes and of two clips with contacts. Times are medians over
-# steps of the least processor time of five passes.
+# answers to some steps of two scenes, bit by bit; with --all, to all steps of all scenes. scripts/record sets takes times.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
 source "$root/scripts/lib/setup.sh"
-[ $# -le 2 ] && [[ ${2:---all} =~ ^--(all|times)$ ]] || die "takes a build folder, and --all or --times; see --help"
+[ $# -le 2 ] && [[ ${2:---all} == --all ]] || die "takes a build folder, and --all; see --help"
 native=${1:-} mode=${2:-}
 [ -z "$native" ] || [ -x "$native/cscd" ] || die "$native holds no program cscd; build the whole project there"
 [ -z "$native" ] || native=$(cd "$native" && pwd)
@@ -49,32 +47,22 @@ node "$root/library/js/test/check_page.mjs" "$packages" "$package" || status=$?
 [ -n "$native" ] || exit 0
 
 say "answers of the package and of $native"
-clips=("hand_contact 47 54" "urchin_contact 8 15") passes=0 modules=$native/python
+clips=("hand_contact 47 54" "urchin_contact 8 15")
 if [ -n "$mode" ]; then
   clips=()
   for scene in rope hand octopus man box urchin fold sheet skirt bag; do clips+=("$scene 0 1000" "${scene}_contact 0 1000"); done
-fi
-if [ "$mode" = --times ]; then
-  clips=("rope 0 60" "hand 0 60" "octopus 0 60" "man 0 60" "box 0 60" "urchin 0 60" "hand_contact 200 210" "fold_contact 0 60")
-  passes=5 modules=$root/build-baseline/python
-  cmake -S "$root" -B "$root/build-baseline" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCSCD_LIBRARY_ONLY=ON -DCSCD_ALL_ISAS=OFF >/dev/null
-  ninja -C "$root/build-baseline" cscd_python
-  uptime  # times mean little on a machine that is not idle
 fi
 failed=0
 for words in "${clips[@]}"; do
   read -r scene from to <<<"$words"
   clip=$build/$scene.bin ours=$build/native.json theirs=$build/package.json
-  PYTHONPATH=$modules /usr/bin/python3 "$root/library/js/test/digest.py" "$clip" "$passes" "$native/cscd" "$scene" "$from" "$to" >"$ours"
-  node "$package/test/digest.mjs" "$clip" "$passes" >"$theirs"
+  PYTHONPATH=$native/python /usr/bin/python3 "$root/library/js/test/digest.py" "$clip" 0 "$native/cscd" "$scene" "$from" "$to" >"$ours"
+  node "$package/test/digest.mjs" "$clip" 0 >"$theirs"
   /usr/bin/python3 - "$scene" "$ours" "$theirs" <<'TEXT' || failed=1
 import json, sys
 scene, native, package = sys.argv[1], *(json.load(open(path)) for path in sys.argv[2:])
 same = native["digest"] == package["digest"]
-print(f"{scene}, {native['contacts']} contacts: {'the same answers' if same else 'FAILED: other answers'}", end="")
-for name, ms in native["ms"].items():
-    print(f"; {name} {package['ms'][name]:.3g} ms, {package['ms'][name] / ms:.2f} times {ms:.3g}", end="")
-print()
+print(f"{scene}, {native['contacts']} contacts: {'the same answers' if same else 'FAILED: other answers'}")
 sys.exit(not same)
 TEXT
   rm "$clip"
