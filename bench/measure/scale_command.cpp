@@ -12,6 +12,7 @@
 #include "bench/inputs/thickness.h"
 #include "bench/measure/studies/scale_study.h"
 #include "bench/measure/studies/scale_summary.h"
+#include "bench/measure/studies/small_steps.h"
 #include "bench/output/data.h"
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"
@@ -22,8 +23,9 @@
 #include "core/base/error.h"
 #include "scenes/catalog/resized.h"
 
-// How cost grows: with triangles, with the length of the step, with bones, threads and contacts (schema
-// cscd.scale/2). What is run unless told otherwise is data, scale_plan.json.
+// How cost grows: with triangles, with the length of the step, with bones, threads and contacts, with a
+// thickness, and with how far small steps move (schema cscd.scale/2). What is run unless told otherwise is
+// data, scale_plan.json.
 namespace cscd::bench {
 namespace {
 
@@ -32,7 +34,7 @@ using nlohmann::ordered_json;
 struct ScaleOptions {
   std::vector<std::string> studies, scenes, strategies;
   std::vector<std::size_t> sizes;
-  std::vector<double> steps;
+  std::vector<double> steps, moves;
   std::optional<std::size_t> intervals, repetitions;
   std::size_t reference_limit = 250'000, seed = 2014;
   int threads = 1;
@@ -45,14 +47,16 @@ std::span<const OptionRow<ScaleOptions>> scale_options() {
   static const OptionRow<S> rows[] = {
       {.name = "--study",
        .member = &S::studies,
-       .help = "size, step, bones, threads, contacts, thickness, with commas; default all but the last",
-       .choices = {"size", "step", "bones", "threads", "contacts", "thickness"}},
+       .help = "size, step, bones, threads, contacts, thickness, small, with commas; default all but the "
+               "last two",
+       .choices = {"size", "step", "bones", "threads", "contacts", "thickness", "small"}},
       {"--scene", &S::scenes,
-       "scenes with commas; default the six, and cloth for contacts and thickness; point caches\n"
-       "for thickness"},
+       "scenes with commas; default the six, and cloth for contacts, thickness and small; point caches\n"
+       "for thickness and small"},
       {"--sizes", &S::sizes, "numbers of triangles, about", {{500, 20'000'000}}},
       {"--largest", &S::largest, "775 thousand and 3.1 million triangles too"},
       {"--steps", &S::steps, "lengths of steps, in frame steps", {{1e-3, 1000}}},
+      {"--moves", &S::moves, "how far small steps move, in mean edges", {{1e-9, 1}}},
       {"--strategy", &S::strategies, "strategies with commas; default by study"},
       {"--intervals", &S::intervals, "of each scene, spread evenly", {{1, 1000}}},
       {"--repetitions", &S::repetitions, "of each interval's timing", {{1, 1000}}},
@@ -101,11 +105,11 @@ class Plan {
                          " is neither a share of a frame nor a whole number of frames; round it");
   }
 
-  // Scenes of which only the studies of contacts and of thickness are planned come last.
+  // Scenes of which only the studies of contacts, of thickness and of small steps are planned come last.
   std::vector<std::string> scenes() const {
     std::vector<std::string> names = or_planned(options_.scenes, "scenes");
     if (!options_.scenes.empty()) return names;
-    for (const char* key : {"contact_scenes", "thickness_scenes"})
+    for (const char* key : {"contact_scenes", "thickness_scenes", "small_scenes"})
       for (const std::string name : data_.at(key))
         if (std::ranges::find(names, name) == names.end()) names.push_back(name);
     return names;
@@ -167,6 +171,25 @@ class Plan {
     add(subject);
   }
 
+  void small(ScaleSubject subject) {
+    std::vector<double> moves = or_planned(options_.moves, "moves");
+    std::ranges::sort(moves);
+    subject.triangles = 0;
+    subject.steps.clear();
+    for (const double edges : data_.at("small_thicknesses"))
+      for (const double distance : moves)
+        for (const char* series : {"substeps", "trials", "iterations"})
+          if (series == std::string_view("substeps") || distance == data_.at("moves_of_all_series"))
+            subject.steps.push_back(
+                {.scene = subject.scene, .edges = edges, .moves = distance, .series = series});
+    subject.repetitions = or_planned(options_.repetitions, "small_repetitions");
+    add(subject, "small_intervals");
+    std::vector<std::size_t>& starts = all_.back().starts;
+    std::vector<std::size_t> repeated;
+    for (const std::size_t start : starts) repeated.insert(repeated.end(), kMeasuredSteps, start);
+    starts = std::move(repeated);
+  }
+
   std::vector<ScaleSubject> take() { return std::move(all_); }
 
  private:
@@ -206,15 +229,18 @@ constexpr struct {
                 {"bones", "bone_scenes", "bone_strategies", false, &Plan::bones},
                 {"threads", "thread_scenes", "thread_strategies", false, &Plan::threads},
                 {"contacts", "contact_scenes", "contact_strategies", false, &Plan::contacts},
-                {"thickness", "thickness_scenes", "thickness_strategies", true, &Plan::thickness}};
+                {"thickness", "thickness_scenes", "thickness_strategies", true, &Plan::thickness},
+                {"small", "small_scenes", "small_strategies", true, &Plan::small}};
 
-// Point caches have one size and the motion that they hold, so one study alone takes them. It runs where it
-// is named: thick queries of large surfaces take as long as all the other studies.
-constexpr std::string_view kOnlyWhereNamed = "thickness";
+// Point caches have one size and the motion that they hold, so that two studies alone take them. These run
+// where they are named: thick queries of large surfaces take as long as all the other studies.
+bool only_where_named(std::string_view study) {
+  return study == "thickness" || study == "small";
+}
 
 bool takes(const ScaleOptions& options, std::string_view study, const std::string& scene) {
-  if (study != kOnlyWhereNamed && is_point_cache(scene)) return false;
-  if (options.studies.empty()) return study != kOnlyWhereNamed;
+  if (!only_where_named(study) && is_point_cache(scene)) return false;
+  if (options.studies.empty()) return !only_where_named(study);
   return std::ranges::find(options.studies, study) != options.studies.end();
 }
 
@@ -267,8 +293,11 @@ void print(const ordered_json& subject) {
     for (const ordered_json& failure : step.at("verified").at("failures"))
       std::printf("  %s\n", failure.get<std::string>().c_str());
     const bool is_thick = step.contains("thickness");
-    std::printf("  %s, %s %-5s %zu of %zu %s:", step.at("scene").get<std::string>().c_str(),
-                is_thick ? "thickness" : "step", step.at(is_thick ? "thickness" : "step").dump().c_str(),
+    std::string what = step.at("scene");
+    if (step.contains("moves"))
+      what += ", " + step.at("series").get<std::string>() + " of " + step.at("moves").dump() + " edges";
+    std::printf("  %s, %s %-5s %zu of %zu %s:", what.c_str(), is_thick ? "thickness" : "step",
+                step.at(is_thick ? "thickness" : "step").dump().c_str(),
                 step.at("colliding").get<std::size_t>(), step.at("starts").size(),
                 is_thick ? "come that close" : "collide");
     std::string lacking;  // what stands behind the marks
@@ -324,7 +353,7 @@ void add_scale(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "scale",
       "Measure how cost grows: with triangles, with the length of the step, with bones, with threads, with\n"
-      "contacts, with the thickness.\n\n"
+      "contacts, with the thickness, with how far small steps move.\n\n"
       "  cscd scale --json scale.json\n"
       "  cscd scale --smoke\n"
       "  cscd scale --study size --scene rope --sizes 12000,48000,194000 --json rope.json\n\n"
@@ -334,6 +363,10 @@ void add_scale(CLI::App& app) {
       "threads  the same surface on one thread and more, up to those of the machine\n"
       "contacts the scene and its variant with contacts, NAME_contact, in turn; intervals as recorded\n"
       "thickness what comes within a distance, in mean edges, counts; also of point caches; where named "
+      "alone\n"
+      "small    steps as a solver takes them, of so many mean edges: one after the other, trials from one\n"
+      "         start, iterations that creep; every fourth of 25 is measured; also of point caches; where "
+      "named "
       "alone\n\n"
       "Every answer is held against the complete reference before anything is timed; on meshes above\n"
       "--reference-up-to on one interval a step, and the others against each other. Exit status 1 where an\n"

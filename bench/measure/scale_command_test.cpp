@@ -8,6 +8,7 @@
 #include "bench/measure/studies/scale_input.h"
 #include "bench/measure/studies/scale_summary.h"
 #include "bench/measure/studies/scaling.h"
+#include "bench/measure/studies/small_steps.h"
 #include "bench/output/schema.h"
 #include "bench/testing/test_program.h"
 #include "core/base/error.h"
@@ -362,6 +363,46 @@ TEST_F(ScaleProgram, TakesTheSameIntervalsAtEveryThickness) {
   EXPECT_EQ(out.at("thickness_ratios").size(), 6u);
 }
 
+// Mutations: the list is made anew for every step; a step moves as far as the whole interval; a row without a
+// proof for a thickness is asked at one.
+TEST_F(ScaleProgram, DividesIntervalsIntoSmallSteps) {
+  const auto out = record({"--smoke", "--study", "small"}, "small");
+  EXPECT_EQ(schema_violation(out, "scale.schema.json"), "");
+  const auto& steps = out.at("subjects").at(0).at("steps");
+  ASSERT_EQ(steps.size(), 8u);
+  for (const auto& step : steps) {
+    EXPECT_EQ(step.at("verified").at("by_reference"), step.at("starts").size());
+    EXPECT_EQ(step.at("leads"), (nlohmann::ordered_json{24, 20, 16, 12, 8, 4}));
+    const auto& rows = step.at("strategies");
+    EXPECT_EQ(rows[1].contains("left_out"), step.at("thickness") > 0)
+        << "selfccd has no proof for a thickness";
+    EXPECT_EQ(rows[2].at("counts").at("contacts"), rows[3].at("counts").at("contacts"));
+    EXPECT_GT(rows[3].at("streaming_ms"), 0);
+    // Lists spare most steps of trials, which start from one pose, all overlap tests.
+    if (step.at("series") == "trials") {
+      EXPECT_LT(rows[3].at("counts").at("bvot"), 0.5 * rows[2].at("counts").at("bvot").get<double>());
+    }
+  }
+}
+
+TEST(SeriesOfSteps, BeginWhereThoseBeforeThemEnd) {
+  const auto substeps = series_of_steps("substeps", 7, 0.125);
+  ASSERT_EQ(substeps.size(), 25u);
+  EXPECT_EQ(substeps.front().start, 7);
+  EXPECT_EQ(substeps.back().end, 7 + 25 * 0.125);
+  for (std::size_t i = 1; i < 25; ++i) EXPECT_EQ(substeps[i].start, substeps[i - 1].end);
+  const auto trials = series_of_steps("trials", 7, 0.125);
+  EXPECT_EQ(trials[22].start, trials[21].end);
+  EXPECT_EQ(trials[24].start, trials[22].start);
+  EXPECT_EQ(trials[24].end - trials[24].start, 0.125 / 4);
+  const auto iterations = series_of_steps("iterations", 0, 1);
+  for (std::size_t i = 1; i < 25; ++i) {
+    EXPECT_EQ(iterations[i].start, iterations[i - 1].end);
+    EXPECT_NEAR(iterations[i].end - iterations[i].start, std::pow(0.9, i), 1e-13);
+  }
+  EXPECT_THROW(series_of_steps("jumps", 0, 1), InputError);
+}
+
 TEST_F(ScaleProgram, TakesPointCachesAtAThicknessAlone) {
   const fs::path folder = *scratch_ / "one", cache = folder / "step.h5";
   fs::create_directories(folder);
@@ -383,7 +424,7 @@ TEST_F(ScaleProgram, TakesPointCachesAtAThicknessAlone) {
 
 TEST_F(ScaleProgram, RefusesInOneLine) {
   const std::pair<std::vector<std::string>, const char*> refusals[] = {
-      {{"--study", "colour"}, "colour not in {size,step,bones,threads,contacts,thickness}"},
+      {{"--study", "colour"}, "colour not in {size,step,bones,threads,contacts,thickness,small}"},
       {{"--study", "thickness", "--strategy", "mcd"}, "choose one of base, "},
       {{"--scene", "step.h5"}, "leave nothing to measure"},
       {{"--steps", "1,2.5"}, "round it"},

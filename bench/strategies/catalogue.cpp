@@ -13,6 +13,7 @@
 #include "core/drvbc/drvbc.h"
 #include "core/fast/drvbc_fast.h"
 #include "core/radial/setup.h"
+#include "core/session/small_steps.h"
 
 namespace cscd::bench {
 namespace {
@@ -133,6 +134,7 @@ constexpr std::array kStrategies = {
             },
         .knows_distance = true,
     },
+    kDrvbcFastNear,
 #ifdef CSCD_BASELINES_FCL
     Strategy{
         .name = "fcl",

@@ -111,6 +111,7 @@ std::string shortfall_of(const json& subject, const json& step, const json& row)
 
 const json& size_of(const std::string& study, const json& subject, const json& step) {
   if (study == "step" || study == "thickness") return step.at(study);
+  if (study == "small") return step.at("moves");
   return subject.at(study == "bones" || study == "threads" ? study : "triangles");
 }
 
@@ -147,6 +148,8 @@ json growth_json(const json& record) {
         const std::string lacking = shortfall_of(subject, step, row);
         if (!lacking.empty()) of_step[row.at("name").get<std::string>()] = lacking;
         if (study == "contacts") continue;  // ratios of two scenes, at one size
+        // Of small steps, a chart shows the plainest: those that follow each other, where touching counts.
+        if (study == "small" && (step.at("series") != "substeps" || step.at("thickness") != 0)) continue;
         points.push_back({{"study", study},
                           {"scene", subject.at("scene")},
                           {"strategy", row.at("name")},

@@ -10,7 +10,7 @@ from script import ROOT, refuse
 from tracked import git, is_checkout, tracked_files
 
 RESULTS = ROOT / "results"
-KINDS = ("full", "starts", "cloth", "real", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "thickness", "motion", "sets", "latency", "waits")
+KINDS = ("full", "starts", "cloth", "real", "accuracy", "benchmark", "scale-contacts", "scale-largest", "scale", "thickness", "solver", "motion", "sets", "latency", "waits")
 PAGES = ("tables.md", "claims.md", "accuracy.md", "scale.md", "benchmark.md", "motion.md", "sets.md", "latency.md", "waits.md", "notes.md")
 HEAD = """# Records
 
@@ -27,6 +27,7 @@ and its kind.
 | benchmark | `scripts/record benchmark` | scores of this project's strategies and today's packages on [the public benchmark](../bench/BENCHMARK.md) |
 | scale, scale-largest, scale-contacts | `scripts/record scale`; with `--largest`; `cscd scale --study contacts` | how cost grows with triangles, steps, bones, threads, contacts |
 | thickness | `scripts/record thickness --real DIR` | what it costs that features count which come within a distance |
+| solver | `scripts/record solver --real DIR` | what small steps cost, as a solver takes them |
 | motion | `scripts/record motion DIR` | where the true motion of characters differs from straight lines, and what it costs to ask |
 | sets | `scripts/record sets` | what the instruction set costs: AVX-512, AVX2, SSE2 and WebAssembly in Node |
 | latency; at first waits | `scripts/record latency BASE` | preparation, all contacts, contacts, long steps and threads, before and after |

@@ -119,6 +119,27 @@ def draw_step(record, folder, everything):
                        "shaded: steps with contacts, the darker the more of their intervals have one" + left_out(missing))
 
 
+def draw_small(record, folder, everything):
+    """Steps that follow each other, where touching counts, and what reading the positions takes."""
+    names, missing = shown(record.names("small"), everything)
+
+    def draw(axes, scene):
+        steps = [step for subject in record.of("small", scene) for step in subject["steps"] if step["series"] == "substeps" and not step["thickness"]]
+        ends = []
+        for name in names:
+            asked = [(step["moves"], own) for step in steps if (own := row(step, name)) and "ms" in own]
+            ends += draw_curve(axes, [(moves, own["ms"]["total"]) for moves, own in asked], starred(record, "small", scene, name), **style(name))
+        reading = [(step["moves"], min(found)) for step in steps if (found := [own["streaming_ms"] for own in step["strategies"] if "streaming_ms" in own])]
+        ends += draw_curve(axes, reading, "reading positions", color="#666666", ls=":")
+        axes.set_xscale("log")
+        log_axis(axes.yaxis)
+        ticks(axes, [step["moves"] for step in steps], lambda moves: f"{moves:g}")
+        return ends
+
+    return draw_scenes(record.scenes("small"), folder, "small", draw, "how far a step moves, in mean edges", "ms a query, refit included",
+                       left_out(missing).strip())
+
+
 def draw_threads(record, folder, everything):
     names, missing = shown(record.names("threads"), everything)
 
@@ -174,6 +195,6 @@ def draw_contacts(record, folder, most):
 def draw_all(record, folder, everything, most_for_contacts):
     """Draws what the record has; returns the names of the charts that were drawn."""
     drawings = {"size": draw_times, "stages": draw_stages, "pairs": draw_pairs, "memory": draw_memory, "step": draw_step,
-                "bones": draw_bones, "threads": draw_threads}
+                "bones": draw_bones, "threads": draw_threads, "small": draw_small}
     drawn = {name for name, draw in drawings.items() if draw(record, folder, everything)}
     return drawn | ({"contacts"} if draw_contacts(record, folder, most_for_contacts) else set())

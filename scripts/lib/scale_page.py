@@ -242,6 +242,28 @@ def thickness_part(record):
     return text + table(head, lines) + [""]
 
 
+def small_part(record, drawn):
+    scenes = record.scenes("small")
+    if not scenes:
+        return []
+    names = record.names("small")
+    text = ["## Small steps", "",
+            "Steps as a solver takes them, between the clip's frames on straight lines. Of a series of 25, every fourth is measured, and a time is the mean of these: substeps follow each "
+            "other; trials, whole, half and a quarter of a step, begin where the substeps before them end; iterations creep towards an end, each 0.9 times "
+            "as long as the one before. How far a step (of iterations, the first) moves, as its first frame does, and a thickness, are in mean edges at "
+            "rest; where the clip is too short for a series, steps are shorter. Milliseconds a query, the mean; reading: what it "
+            "takes to read the positions of both ends once.", ""]
+    lines = []
+    for scene in scenes:
+        for step in (step for subject in record.of("small", scene) for step in subject["steps"]):
+            rows = [timed(step, name) for name in names]
+            reading = [own["streaming_ms"] for own in rows if own and "streaming_ms" in own]
+            lines.append([scene, step["series"], f"{step['moves']:g}", f"{step['thickness']:g}", f"{step['colliding']} of {len(step['starts'])}",
+                          *(time_of(step, own) if own else "–" for own in rows), number(min(reading) if reading else None)])
+    head = ["scene", "series", "moves", "thickness", "with contacts", *(f"`{name}`" for name in names), "reading"]
+    return text + table(head, lines, 2) + [""] + drawing(drawn, "small", "time against how far small steps move")
+
+
 def timed(step, name):
     """The row of a strategy in a step, or None where it has no time."""
     own = row(step, name)
@@ -344,6 +366,7 @@ def mark_part(record):
     for subject in record.raw["subjects"]:
         for step in subject["steps"]:
             where = f"{subject['study']}, {step['scene']}" + (
+                f", {step['series']} of {step['moves']:g} edges" if "moves" in step else "") + (
                 f", thickness {step['thickness']:g}" if "thickness" in step else f", step {step['step']:g}" if subject["study"] == "step" else "") + (
                 f", {subject['triangles']:,} triangles" if subject["study"] == "size" else "")
             rows = [f"`{own['name']}` ({text})" for own in step["strategies"] if "ms" in own and (text := step["lacking"].get(own["name"]))]
@@ -357,7 +380,7 @@ def mark_part(record):
 
 def summary(record):
     """The figures that a reader wants first, a line each."""
-    names = record.names("size") or record.names("step") or record.names("contacts") or record.names("thickness")
+    names = record.names("size") or record.names("step") or record.names("contacts") or record.names("thickness") or record.names("small")
     text, parts = [], []
     for scene in record.scenes("size"):
         law = record.fit("size", scene, names[0], "total")
@@ -384,7 +407,7 @@ def page(record, drawn):
         lost = losses(record)
         text += ["", "## Where it loses", ""] + ([f"- {line}" for line in lost] or [NOWHERE])
     text += [""] + size_part(record, drawn) + step_part(record, drawn) + bones_part(record, drawn) + threads_part(record, drawn)
-    text += contacts_part(record, drawn) + thickness_part(record)
+    text += contacts_part(record, drawn) + thickness_part(record) + small_part(record, drawn)
     text += mark_part(record)
     text += checked_part(record)
     return "\n".join(text) + "\n"

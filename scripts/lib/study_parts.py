@@ -55,7 +55,7 @@ def growth(folders, up, program):
 
 
 GROWTH = {"scale": "Triangles, steps, bones, threads and contacts", "scale-largest": "Up to 3.1 million triangles",
-          "scale-contacts": "Contacts of cloth", "thickness": "Thickness"}
+          "scale-contacts": "Contacts of cloth", "thickness": "Thickness", "solver": "Small steps"}
 
 
 def words():

@@ -15,10 +15,14 @@ struct ScaleStep {
   std::string scene;  // of whose motion they are
   double frames = 1;  // a whole number of frame steps, or a share of one
   double edges = 0;   // the thickness, in mean edges at rest
+  // Of the study of small steps: how far a step moves, in mean edges at rest, and as part of which series
+  // (small_steps.h).
+  double moves = 0;
+  std::string series = {};
 };
 
 struct ScaleSubject {
-  std::string study;      // size, step, bones, threads, contacts or thickness
+  std::string study;      // size, step, bones, threads, contacts, thickness or small
   std::string scene;      // whose surface and bones these are; of recorded steps, also a point cache
   bool recorded = false;  // each step as its scene's clip holds it; else posed anew from the subject's scene
   std::size_t triangles = 0;        // asked for, of a posed one; 0 for the scene's own

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "bench/harness/measurement.h"
+#include "bench/measure/studies/small_steps.h"
 #include "bench/records/shortfall.h"
 #include "bench/statistics/statistics.h"
 #include "bench/strategies/catalogue.h"
@@ -27,7 +28,7 @@ class Study {
  public:
   explicit Study(const ScaleSubject& subject)
       : subject_(subject),
-        scaled_(scale_input(subject)),
+        scaled_(subject.study == "small" ? small_steps_input(subject) : scale_input(subject)),
         edge_(mean_edge(input().mesh, input().rest())),
         is_thick_(std::ranges::any_of(subject.steps, [](const ScaleStep& s) { return s.edges > 0; })) {
     const ElementaryTest& test = elementary_test_named(kElementary);
@@ -92,8 +93,10 @@ class Study {
       const bool is_slow = std::ranges::any_of(
           results_, [&](const SectionResult* earlier) { return earlier->mean_ms(c) > kTooLong; });
       if (is_reference) all = all && !is_slow;
-      out.asked.push_back(is_reference || !is_slow);
-      others += !is_reference && !is_slow;
+      const bool is_asked =
+          is_reference || (!is_slow && (out.thickness == 0 || contestants_[c].row.strategy->knows_distance));
+      out.asked.push_back(is_asked);
+      others += !is_reference && is_asked;
     }
     for (const SectionResult* earlier : results_) {  // of a reference that is no row, what judging took
       const VerificationRecord& judged = earlier->verification;
@@ -155,6 +158,10 @@ class Study {
           {"by_each_other", subject_.starts.size() - verified.intervals.size()},
           {"failures", std::move(failures)}}},
         {"strategies", std::move(rows)}};
+    if (subject_.steps[s].moves > 0) {
+      out["moves"] = subject_.steps[s].moves;
+      out["series"] = subject_.steps[s].series;
+    }
     if (is_thick_) {
       out["thickness"] = subject_.steps[s].edges;
       out["length"] = result.section.thickness;
@@ -163,7 +170,7 @@ class Study {
     return out;
   }
 
-  static ordered_json row_json(const SectionResult& result, std::size_t c) {
+  ordered_json row_json(const SectionResult& result, std::size_t c) const {
     const StrategyRecord& own = result.rows[c];
     ordered_json row = {{"name", own.name}}, counts = ordered_json::object();
     for (const auto& [name, values] : own.counts)
@@ -179,7 +186,9 @@ class Study {
         if (once) append_times(once->report.ms, columns, 0);
     if (columns.empty()) {
       row["left_out"] =
-          "takes over " + std::to_string(static_cast<int>(kTooLong)) + " ms for an earlier step";
+          result.section.thickness > 0 && !contestants_[c].row.strategy->knows_distance
+              ? "has no proof for a thickness"
+              : "takes over " + std::to_string(static_cast<int>(kTooLong)) + " ms for an earlier step";
       return row;
     }
     ordered_json ms = ordered_json::object();
@@ -191,6 +200,8 @@ class Study {
                               medians = of_repetitions(queries, median);
     ms["total"] = median(means);
     ms["median_interval"] = median(medians);
+    if (const auto streaming = columns.find("streaming"); streaming != columns.end())
+      row["streaming_ms"] = median(of_repetitions(streaming->second, mean));
     row["ms"] = std::move(ms);
     row["total_samples"] = means;
     row["median_interval_samples"] = medians;

@@ -53,7 +53,7 @@ ordered_json fits(const ordered_json& subjects) {
   std::vector<std::pair<std::array<std::string, 4>, Series>> series;
   for (const ordered_json& subject : subjects) {
     const std::string study = subject.at("study");
-    if (study == "step" || study == "contacts" || study == "thickness") continue;
+    if (study == "step" || study == "contacts" || study == "thickness" || study == "small") continue;
     const double x = subject.at(study == "size" ? "triangles" : study);
     const auto add = [&](const std::string& strategy, const std::string& quantity, double y) {
       const std::array<std::string, 4> key = {study, subject.at("scene"), strategy, quantity};

@@ -1,9 +1,10 @@
 #!/bin/bash
-# Runs tests of the core on 64-bit ARM, under qemu-user.
+# Runs tests of the core on 64-bit ARM under qemu-user, and counts instructions beside those of a processor without AVX.
 #
 #   scripts/check aarch64 [ROOM...]     the rooms whose tests run, such as core_geometry; without any, those listed below
 #
-# Builds with Debian's cross compiler.
+# Builds with Debian's cross compiler. Instructions are those of library/consumer/digest.cpp, preparation included, whose answers
+# have to be the same on both.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
 source "$root/scripts/lib/setup.sh"
@@ -15,9 +16,9 @@ export CSCD_SYSROOT=${CSCD_SYSROOT:-$root/.cache/aarch64}
 
 echo "Installs g++-aarch64-linux-gnu, qemu-user, mmdebstrap, cmake and ninja-build where they are missing. Unpacks arm64"
 echo "packages of Debian 12 (libc, libstdc++, Eigen, Boost, oneTBB, GMP, GoogleTest; 140 MB) into .cache/aarch64, and changes nothing"
-echo "else of the system. On 2 idle cores it takes about 15 minutes, most of it for compiling."
+echo "else of the system. On 2 idle cores it takes about 25 minutes, most of it for compiling."
 say "packages"
-install_packages g++-aarch64-linux-gnu qemu-user mmdebstrap cmake ninja-build
+install_packages g++ g++-aarch64-linux-gnu qemu-user mmdebstrap cmake ninja-build libeigen3-dev libboost-dev libtbb-dev
 if [ ! -e "$CSCD_SYSROOT" ]; then
   mkdir -p "$root/.cache"
   mmdebstrap --quiet --variant=extract --architectures=arm64 \
@@ -56,4 +57,25 @@ for room in "${rooms[@]}"; do
     "$(grep -c "^failed $room " "$build/tests.txt" || true) fail"
 done
 [ "$(wc -l <"$build/tests.txt")" -eq "$(wc -l <"$build/names.txt")" ] || die "not every test of $build/names.txt was run"
-! grep -q ^failed "$build/tests.txt"
+! grep -q ^failed "$build/tests.txt" || exit 1
+
+say "instructions"
+plain=$root/build-baseline
+cmake -S "$root" -B "$plain" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCSCD_LIBRARY_ONLY=ON -DCSCD_ALL_ISAS=OFF >/dev/null
+ninja -C "$plain" cscd_static
+gcc -shared -fPIC -O2 "$root/scripts/lib/check/instructions.c" -o "$build/instructions.so"
+source=(-std=c++20 -O2 -I "$root/library/include" "$root/library/consumer/digest.cpp")
+aarch64-linux-gnu-g++ --sysroot="$CSCD_SYSROOT" -isystem "$CSCD_SYSROOT/usr/include/eigen3" "${source[@]}" "$build/libcscd.a" -ltbb -o "$build/digest"
+g++ -isystem /usr/include/eigen3 "${source[@]}" "$plain/libcscd.a" -ltbb -o "$plain/digest"
+declare -A answers counts
+run() {  # NAME EMULATOR...
+  local name=$1
+  shift
+  answers[$name]=$("$@" 50 20 2>"$build/count.txt" | grep contacts)
+  counts[$name]=$(sed -n 's/^instructions //p' "$build/count.txt")
+  echo "$name: ${answers[$name]}, $((counts[$name] / 1000000)) million instructions"
+}
+run NEON qemu-aarch64 -L "$CSCD_SYSROOT" -plugin "$build/instructions.so" "$build/digest"
+run SSE2 qemu-x86_64 -plugin "$build/instructions.so" "$plain/digest"
+awk -v neon="${counts[NEON]}" -v sse="${counts[SSE2]}" 'BEGIN { printf "NEON takes %.2f times the instructions of SSE2\n", neon / sse }'
+[ "${answers[NEON]}" = "${answers[SSE2]}" ] || die "other answers on 64-bit ARM"

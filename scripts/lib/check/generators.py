@@ -1,10 +1,11 @@
 """Builds the library and the whole project with each of CMake's generators, with a stand-in for the compiler, from a path with a blank.
 
-  scripts/check generators            Unix Makefiles, Ninja and Ninja Multi-Config; each builds the library alone, a project that takes it by
-                                      add_subdirectory and by FetchContent, and, but for Ninja, which scripts/test uses, the whole project
+  scripts/check generators            Unix Makefiles, Ninja and Ninja Multi-Config build the library alone; Makefiles, which cmake takes where none
+                                      is named, also the whole project, and one that takes the library by add_subdirectory and by FetchContent
+  scripts/check generators --all      each of them builds all of that, but for the whole project by Ninja, which scripts/test uses
   scripts/check generators --real     the library alone by each generator with the compiler itself: a quarter of an hour each on 2 idle cores
 
-Nothing is compiled without --real, so all of it takes a minute or two. Exit status: 0 all build, 1 something does not.
+Nothing is compiled without --real, so --all takes a minute or two, and the rest half of that. Exit status: 0 all build, 1 something does not.
 """
 import os
 import pathlib
@@ -59,7 +60,9 @@ def waiting_copies(build):
 def main():
     parser = parser_of(__doc__)
     parser.add_argument("--real", action="store_true", help="compile")
-    real = parser.parse_args().real
+    parser.add_argument("--all", action="store_true", help="everything by each generator")
+    options = parser.parse_args()
+    real = options.real
     failed = 0
     with tempfile.TemporaryDirectory(prefix="cscd ") as folder:
         work = pathlib.Path(folder)
@@ -68,11 +71,12 @@ def main():
         environment = without_git(os.environ) if real else stand_ins(work / "stand-ins")
         for generator in GENERATORS:
             results = [("the library alone", built(environment, generator, tree, ["-DCSCD_LIBRARY_ONLY=ON"], LIBRARY))]
-            if not real and generator != "Ninja":
+            is_usual = generator == GENERATORS[0]
+            if not real and (is_usual or options.all and generator != "Ninja"):
                 results.append(("the whole project", built(environment, generator, tree, [],
                                                            (*LIBRARY, "cscd", "cscd-avx2", "cscd-import", "library_test"))))
             release = ["-DCMAKE_DEFAULT_BUILD_TYPE=Release"] if "Multi" in generator else []  # what a project of a user's own builds
-            for way, takes in [] if real else WAYS.items():
+            for way, takes in WAYS.items() if not real and (is_usual or options.all) else []:
                 (work / "outer" / "CMakeLists.txt").write_text(OUTER.format(takes=takes))
                 results.append((way, built(environment, generator, work / "outer", [f"-DWAY={way}", *release], ("outer",))))
             for what, wrong in results:

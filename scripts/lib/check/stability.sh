@@ -1,19 +1,21 @@
 #!/bin/bash
 # Checks that answers are the same bits whatever the compiler, optimisation and instruction set.
 #
-#   scripts/check stability CSCD FOLDER          the program, which writes the queries; where to build
-#   scripts/check stability CSCD FOLDER --all    three ways more, in two minutes more
+#   scripts/check stability BUILD FOLDER          a folder with a build of the whole project; where to build
+#   scripts/check stability BUILD FOLDER --all    four ways more, in three minutes more
 #
-# Builds digest.cpp in several ways, as few translation units as names allow, and compares what they print on the hard suite.
+# Builds digest.cpp without optimisation, as few translation units as names allow, and compares what it and BUILD's own print on the
+# hard suite. With --all, it is built in further ways.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
 source "$root/scripts/lib/setup.sh"
-if [ $# -lt 2 ] || [ $# -gt 3 ] || [ "${3:---all}" != --all ]; then die "usage: scripts/check stability CSCD FOLDER [--all]"; fi
-cscd=$(realpath "$1")
+if [ $# -lt 2 ] || [ $# -gt 3 ] || [ "${3:---all}" != --all ]; then die "usage: scripts/check stability BUILD FOLDER [--all]"; fi
+build=$(realpath "$1")
+[ -x "$build/answers_digest" ] || die "$1 holds no program answers_digest; build the whole project there"
 mkdir -p "$2/queries"
 cd "$2"
 
-"$cscd" hardcases --out queries --queries 12 --force > /dev/null
+"$build/cscd" hardcases --out queries --queries 12 --force > /dev/null
 
 parts=()
 part() {
@@ -38,14 +40,25 @@ part bounds core/hierarchy/{bounds,loose_vertices,scalar_bounds,tree,vertex_boun
 part plain core/detect/plain_sign
 part digest scripts/lib/check/digest
 
-clang=$(command -v clang++ || true) all=${3:-}
 variants=("g++ -O0")
-[ -z "$clang" ] || variants+=("clang++ -O3 -march=native")
-if [ -n "$all" ] || [ -z "$clang" ]; then variants+=("g++ -O3 -march=native"); fi
-if [ -n "$all" ] && [ -n "$clang" ]; then variants+=("clang++ -O2"); fi
-# Registers of 32 bytes, where the machine has larger ones. Without --all, scripts/check isas alone asks for them.
-if [ -n "$all" ] && grep -qw avx512f /proc/cpuinfo; then variants+=("g++ -O2 -march=x86-64-v3"); fi
+if [ -n "${3:-}" ]; then
+  variants+=("g++ -O3 -march=native")
+  ! command -v clang++ >/dev/null || variants+=("clang++ -O2" "clang++ -O3 -march=native")
+  # Registers of 32 bytes, where the machine has larger ones. Without --all, scripts/check isas alone asks for them.
+  ! grep -qw avx512f /proc/cpuinfo || variants+=("g++ -O2 -march=x86-64-v3")
+fi
 failed=0 first=""
+compare() {  # NAME KEY PROGRAM
+  "$3" queries/*.csv > "$2.txt"
+  first=${first:-$2}
+  if cmp -s "$first.txt" "$2.txt"; then
+    echo "$1: $(wc -l < "$2.txt") digests"
+  else
+    failed=1
+    echo "$1: answers differ from those of ${variants[0]}:"
+    diff "$first.txt" "$2.txt" | head -n 20 || true
+  fi
+}
 for variant in "${variants[@]}"; do
   read -r -a words <<< "$variant"
   key=${variant//[^a-z0-9+=]/}
@@ -56,14 +69,7 @@ for variant in "${variants[@]}"; do
     objects+=("$key-$name.o")
   done
   "${words[@]}" "${objects[@]}" -lgmpxx -lgmp -ltbb -o "digest-$key"
-  "./digest-$key" queries/*.csv > "$key.txt"
-  first=${first:-$key}
-  if cmp -s "$first.txt" "$key.txt"; then
-    echo "$variant: $(wc -l < "$key.txt") digests"
-  else
-    failed=1
-    echo "$variant: answers differ from those of ${variants[0]}:"
-    diff "$first.txt" "$key.txt" | head -n 20 || true
-  fi
+  compare "$variant" "$key" "./digest-$key"
 done
+compare "the build" build "$build/answers_digest"
 exit $failed

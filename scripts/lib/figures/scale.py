@@ -10,6 +10,7 @@ scale-memory   bytes a triangle against triangles
 scale-step     time against the length of the step
 scale-bones    time against bones (where the record has them)
 scale-threads  how many times as fast on more threads (where the record has them)
+scale-small    time against how far small steps move (where the record has them)
 scale-contacts time of the variants with contacts over that of the scenes (where the record has them)
 A chart shows at most eight rows, unless --all asks for all of them. The figures are PNG files; the same record gives the same
 bytes.
