@@ -361,6 +361,7 @@ DepthCheck check_depth(const ClipAnswer& answer, const WrittenLength& most) {
   const bool is_bound_in_doubt = identical_triangles(answer.input.mesh) > 0;
   double lower = 0, upper = 0, unknown = -1;
   for (const OverlapEvent& event : answer.events) {
+    if (!event.crosses) continue;  // what only touches lies in nothing
     lower = std::max(lower, event.depth.lower), upper = std::max(upper, event.depth.upper);
     if (!is_known(event.depth) && (is_bound_in_doubt || event.depth.upper > length))
       unknown = std::max(unknown, event.depth.upper);

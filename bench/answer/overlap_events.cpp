@@ -68,25 +68,32 @@ double OverlapEvents::depth_at_rest(const Overlaps& all, const Overlap& overlap)
 }
 
 NamePair OverlapEvents::names_of(const Overlaps& all, const Overlap& overlap) const {
-  // The side of each curve on which the deepest region lies; 0 where that bounds none.
+  // The deepest point lies in the component whose triangle is nearest to it. Within one component, the side
+  // of each curve on which the deepest region lies; 0 where that bounds none.
+  const TriangleId nearest = overlap.depth.nearest;
   std::map<std::int32_t, std::size_t> side;
   if (!overlap.regions.empty())
     for (const std::int32_t image : overlap.regions.front().image)
       side.try_emplace(image / 2, static_cast<std::size_t>(image % 2));
   std::map<std::pair<std::int32_t, std::int32_t>, std::pair<std::size_t, std::array<TriangleId, 2>>> count;
   auto last = count.end();  // neighbouring segments are mostly between the same places
+  const auto add = [&](const std::array<TriangleId, 2>& segment, std::size_t own) {
+    const auto component = [&](std::size_t s) { return input_.mesh.component(segment[s]); };
+    if (nearest != TriangleId{-1} && component(0) != component(1))
+      own = component(0) == input_.mesh.component(nearest) ? 1 : 0;
+    const std::pair places(names_.place_number(segment[own]), names_.place_number(segment[1 - own]));
+    if (last == count.end() || last->first != places) last = count.try_emplace(places).first;
+    auto& [times, example] = last->second;
+    ++times;
+    example = {segment[own], segment[1 - own]};
+  };
   for (const std::int32_t curve : overlap.curves) {
     const auto own = side.find(curve);
     if (!side.empty() && own == side.end()) continue;
-    const std::size_t s = own == side.end() ? 0 : own->second;
-    for (const auto& segment : all.crossing.curves[static_cast<std::size_t>(curve)].segments) {
-      const std::pair places(names_.place_number(segment[s]), names_.place_number(segment[1 - s]));
-      if (last == count.end() || last->first != places) last = count.try_emplace(places).first;
-      auto& [times, example] = last->second;
-      ++times;
-      example = {segment[s], segment[1 - s]};
-    }
+    for (const auto& segment : all.crossing.curves[static_cast<std::size_t>(curve)].segments)
+      add(segment, own == side.end() ? 0 : own->second);
   }
+  for (const auto& segment : overlap.touching) add(segment, 0);
   const auto& [one, other] = std::ranges::max_element(count, {}, [](const auto& entry) {
                                return entry.second.first;
                              })->second.second;
@@ -129,7 +136,7 @@ void OverlapEvents::extend(OverlapEvent& event, const Overlaps& all, const Overl
   event.pairs = event.vertices = 0;
   event.area = 0;
   event.at_rest = at_rest;
-  event.crosses = at_rest.has_value();
+  event.crosses = at_rest.has_value() || overlap.curves.empty();
   for_each_segment(all.crossing, overlap, [&](const auto& segment) {
     event.crosses = event.crosses || !answer.start_touching.contains(pair_of(segment));
   });

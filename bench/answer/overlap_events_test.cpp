@@ -64,5 +64,29 @@ TEST(OverlapEvents, AreNoneOfWhatCrossesAtRest) {
   EXPECT_EQ(events_of(input, within, true).size(), 1u);
 }
 
+// An edge of a bar lies half a unit deep in a plate, and no vertex of either lies in the other. Mutations:
+// the side is that of the first curve; what touches a wall from within is no event.
+TEST(OverlapEvents, NameWhatLiesInWhatInEitherOrder) {
+  const test::Shape plate = test::box({-10, 0, 0}, {10, 4, 4});
+  const test::Shape bar = {
+      {{0, -1, 3.5}, {3, -1, 6.5}, {-3, -1, 6.5}, {0, 5, 3.5}, {3, 5, 6.5}, {-3, 5, 6.5}},
+      {test::corners(0, 2, 1), test::corners(3, 4, 5), test::corners(0, 1, 4), test::corners(0, 4, 3),
+       test::corners(1, 2, 5), test::corners(1, 5, 4), test::corners(2, 0, 3), test::corners(2, 3, 5)}};
+  const test::Shape peg = test::box({0, 1, 1}, {2, 3, 3});  // stands on a wall of the plate from within
+  const test::Shape room = test::box({0, 0, 0}, {4, 4, 4});
+  for (const auto& [inner, outer, depth] : {std::tuple(bar, plate, 0.5), std::tuple(peg, room, 2.0)})
+    for (const bool inner_first : {false, true}) {
+      const test::Shape both = inner_first ? test::together(inner, outer) : test::together(outer, inner);
+      Input input = input_of(both, {both.positions, both.positions});
+      std::size_t within = 0;
+      const std::vector<OverlapEvent> events = events_of(input, within, true);
+      ASSERT_EQ(events.size(), 1u);
+      EXPECT_EQ(events[0].names.first.back(), inner_first ? '0' : '1') << events[0].names.first;
+      EXPECT_EQ(events[0].names.second.back(), inner_first ? '1' : '0') << events[0].names.second;
+      EXPECT_NEAR(events[0].depth.lower, depth, 1e-12);
+      EXPECT_TRUE(events[0].crosses);
+    }
+}
+
 }  // namespace
 }  // namespace cscd::bench

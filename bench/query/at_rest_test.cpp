@@ -258,13 +258,23 @@ TEST_F(AtRest, IdenticalTrianglesAreLeftOutAndSaid) {
   }
 }
 
-// Mutation: a depth of which only a bound is known passes.
+// Mutations: a depth of which only a bound is known passes; what only touches fails.
 TEST_F(AtRest, ADepthThatIsNotKnownFailsUnlessItsBoundIsSmall) {
   put_frames({1, 1.5});
+  EXPECT_EQ(status("--fail-deeper-than 0.1"), 0) << "one box rests on the other";
+  // A tetrahedron comes to lie on its copy.
+  for (const int frame : {0, 1, 2}) {
+    std::string obj;
+    for (const double shift : {0.0, frame == 1 ? 0.0 : 2.0})
+      for (const auto& [x, y, z] : {std::array{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
+        obj += "v " + std::to_string(x + shift) + " " + std::to_string(y) + " " + std::to_string(z) + "\n";
+    put("f." + std::to_string(frame) + ".obj",
+        obj + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 5 7 6\nf 5 6 8\nf 6 7 8\nf 7 5 8\n");
+  }
   const auto asked = run("cscd query f.0.obj --fail-deeper-than 0.1");
   EXPECT_EQ(asked.status, 3);
   EXPECT_TRUE(has(asked.out, "fails, because a depth is not known: at most ")) << asked.out;
-  EXPECT_EQ(status("--fail-deeper-than 0.5"), 0);
+  EXPECT_EQ(status("--fail-deeper-than 2"), 0);
 }
 
 // Mutation: what touches beside what crosses is said to be counted.

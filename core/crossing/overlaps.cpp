@@ -67,9 +67,11 @@ class PoseOverlaps {
         each_way_(each_way) {}
 
   Overlaps find(std::span<const CrossingPair> pairs) {
+    pairs_ = pairs;
     out_.crossing = find_curves(mesh_, exact_, pairs, positions_);
-    if (crossing().curves.empty()) return std::move(out_);
-    if (crossing().degenerate > 0) find_ties(pairs);
+    const Meeting meeting = meeting_without_curves();
+    if (crossing().curves.empty() && meeting.empty()) return std::move(out_);
+    if (crossing().degenerate > 0) find_ties();
     finder_.visited_.resize(mesh_.vertex_count(), 0);
     finder_.listed_.resize(mesh_.triangle_count(), 0);
     parts_.emplace(mesh_, finder_.marks_, crossing(), exact_, positions_);
@@ -79,6 +81,10 @@ class PoseOverlaps {
     gather_other_sheets();
     for (std::size_t r = 0; r < regions_.size(); ++r) measure(r);
     group();
+    for (const auto& [both, touching] : meeting)
+      if (!find_enclosed(both.first, both.second, touching)) find_enclosed(both.second, both.first, touching);
+    std::ranges::stable_sort(out_.overlaps, std::ranges::greater{},
+                             [](const Overlap& o) { return o.depth.lower; });
     parts_.reset();  // before its curves go
     return std::move(out_);
   }
@@ -100,7 +106,7 @@ class PoseOverlaps {
 
   // Notes which vertices lie exactly on a triangle. A broken tie puts such a vertex on either side of the
   // sheet, but it lies in none.
-  void find_ties(std::span<const CrossingPair> pairs) {
+  void find_ties() {
     const auto note = [&](TriangleId of, TriangleId on) {
       const Triangle& c = mesh_.corners(on);
       for (const VertexId v : mesh_.corners(of))
@@ -108,7 +114,7 @@ class PoseOverlaps {
             vertex_touches_triangle(exact_[+v], exact_[+c[0]], exact_[+c[1]], exact_[+c[2]]))
           on_sheet_.emplace_back(v, mesh_.component(on));
     };
-    for (const auto& [a, b] : pairs) note(a, b), note(b, a);
+    for (const auto& [a, b] : pairs_) note(a, b), note(b, a);
     sort_unique(on_sheet_);
   }
   bool lies_on(VertexId v, std::int32_t component) const {
@@ -227,15 +233,40 @@ class PoseOverlaps {
     });
   }
 
+  // Distances to the skin of one component that another one has gone through: to all triangles that meet the
+  // other one, or that have a vertex in a region there. Flush walls are among them.
+  const SheetDistance& to_skin(std::int32_t own, std::int32_t other) {
+    const auto known = to_skin_.find({own, other});
+    if (known != to_skin_.end()) {
+      known->second.start_anew();
+      return known->second;
+    }
+    std::vector<TriangleId> triangles;
+    for (const auto& [a, b] : pairs_) {
+      if (mesh_.component(a) == own && mesh_.component(b) == other) triangles.push_back(b);
+      if (mesh_.component(b) == own && mesh_.component(a) == other) triangles.push_back(a);
+    }
+    for (const Found& found : regions_)
+      if (found.region.own == other && found.region.other == own)
+        for (const VertexId v : found.region.vertices)
+          for (const TriangleId t : mesh_.triangles_at(v)) triangles.push_back(t);
+    sort_unique(triangles);
+    return to_skin_.try_emplace({own, other}, mesh_, positions_, triangles).first->second;
+  }
+  // Whether what a curve cuts off the other sheet of an image is not bounded (CrossingRegion::other_is_open).
+  bool is_open_beyond(std::int32_t image) const {
+    const std::int32_t opposite = image ^ 1;
+    return region_of_image_[index(opposite)] == kNone && !has_no_vertex(opposite);
+  }
+
   // Distances to the other sheet of what belongs to one image, in region `own` or in none; valid until the
   // next call. Sets `is_open` where that sheet is not bounded (CrossingRegion::other_is_open).
   const SheetDistance& to_other_sheet(std::int32_t image, std::int32_t own, bool& is_open) {
     const std::int32_t opposite = image ^ 1, other = region_of_image_[index(opposite)];
-    is_open = other == kNone && !has_no_vertex(opposite);
-    if (is_open) {
-      const std::int32_t component = mesh_.component(sheet_[index(opposite)].front());
-      if (component != mesh_.component(sheet_[index(image)].front())) return to_component(component);
-    }
+    is_open = is_open_beyond(image);
+    const std::int32_t here = mesh_.component(sheet_[index(image)].front()),
+                       beyond = mesh_.component(sheet_[index(opposite)].front());
+    if (here != beyond) return is_open ? to_component(beyond) : to_skin(here, beyond);
     std::vector<TriangleId> triangles;
     const std::uint32_t list = ++finder_.lists_;
     const auto add = [&](std::int32_t of) {
@@ -277,14 +308,11 @@ class PoseOverlaps {
     CrossingRegion& region = regions_[r].region;
     if (each_way_) region.way.assign(region.vertices.size(), Vec3::Zero());
     double farthest = 0;  // of the region's vertices, ties among them
-    for (const std::int32_t image : regions_[r].region.images) {
-      bool is_open = false;
-      const SheetDistance& to = to_other_sheet(image, static_cast<std::int32_t>(r), is_open);
-      region.other_is_open |= is_open;
-      // The vertices that are farthest from the curves come first: they are deepest most often, and then the
-      // others need no search.
+    // The vertices that are farthest from the curves come first: they are deepest most often, and then the
+    // others need no search.
+    const auto look = [&](const SheetDistance& to, std::optional<std::int32_t> image) {
       for (std::size_t i = region.vertices.size(); i-- > 0;) {
-        if (region.image[i] != image) continue;
+        if (image && region.image[i] != *image) continue;
         const Vec3& x = positions_[+region.vertices[i]];
         const bool is_tie = lies_on(region.vertices[i], region.other);
         const SheetDistance::Nearest nearest = to.nearest(x, each_way_ ? 0
@@ -294,6 +322,17 @@ class PoseOverlaps {
         if (is_tie) continue;
         if (each_way_) region.way[i] = way(x, nearest.triangle);
         deepen(region.depth, x, region.vertices[i], nearest);
+      }
+    };
+    if (region.own != region.other) {
+      region.other_is_open =
+          std::ranges::any_of(region.images, [&](std::int32_t image) { return is_open_beyond(image); });
+      look(region.other_is_open ? to_component(region.other) : to_skin(region.own, region.other), {});
+    } else {
+      for (const std::int32_t image : region.images) {
+        bool is_open = false;
+        look(to_other_sheet(image, static_cast<std::int32_t>(r), is_open), image);
+        region.other_is_open |= is_open;
       }
     }
     if (region.depth.lower == 0 && !on_sheet_.empty()) measure_tied_edges(r);
@@ -412,8 +451,69 @@ class PoseOverlaps {
                                [](const CrossingRegion& r) { return r.depth.lower; });
       for (const CrossingRegion& region : overlap.regions) deepest_of(overlap.depth, region.depth);
     }
-    std::ranges::stable_sort(out_.overlaps, std::ranges::greater{},
-                             [](const Overlap& o) { return o.depth.lower; });
+  }
+
+  // Closed components that meet and on which no curve of both lies, with the pairs of triangles in which they
+  // do. One may lie in the other, and where ties are broken inwards, it pierces nothing of its wall.
+  using Meeting = std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::array<TriangleId, 2>>>;
+  Meeting meeting_without_curves() const {
+    const auto components = [&](TriangleId a, TriangleId b) {
+      return std::minmax({mesh_.component(a), mesh_.component(b)});
+    };
+    Meeting out;
+    for (const auto& [a, b] : pairs_) {
+      const auto both = components(a, b);
+      if (both.first == both.second || finder_.marks_.is_open[index(both.first)] ||
+          finder_.marks_.is_open[index(both.second)])
+        continue;
+      const bool in_order = mesh_.component(a) == both.first;
+      out[both].push_back(in_order ? std::array{a, b} : std::array{b, a});
+    }
+    for (const CrossingCurve& curve : crossing().curves)
+      out.erase(components(curve.segments.front()[0], curve.segments.front()[1]));
+    return out;
+  }
+
+  // Takes a component for a region where it lies in another one altogether. Returns whether it does.
+  bool find_enclosed(std::int32_t own, std::int32_t other,
+                     const std::vector<std::array<TriangleId, 2>>& touching) {
+    if (parts_->is_inward(own) || parts_->is_inward(other)) return false;  // a cavity holds nothing
+    CrossingRegion region;
+    region.own = own;
+    region.other = other;
+    const SheetDistance& to = to_skin(own, other);
+    const std::uint32_t number = ++finder_.lists_;
+    for (const TriangleId t : parts_->marks().triangles_of(own)) {
+      const Triangle& c = mesh_.corners(t);
+      region.area +=
+          (positions_[+c[1]] - positions_[+c[0]]).cross(positions_[+c[2]] - positions_[+c[0]]).norm() / 2;
+      for (const VertexId v : c) {
+        if (std::exchange(finder_.visited_[+v], number) == number) continue;
+        const Vec3& x = positions_[+v];
+        const SheetDistance::Nearest nearest = to.nearest(x, each_way_ ? 0 : region.depth.lower);
+        region.vertices.push_back(v);
+        if (each_way_) region.way.push_back(way(x, nearest.triangle));
+        deepen(region.depth, x, v, nearest);
+      }
+    }
+    const double farthest = region.depth.lower;  // of a vertex
+    if (farthest <= kOnSheet * largest_)  // all vertices lie on the wall, and edges between them inside
+      for (const TriangleId t : parts_->marks().triangles_of(own))
+        for (const EdgeId edge : mesh_.edges_of(t)) {
+          const auto [p, q] = mesh_.ends(edge);
+          const Vec3 middle = (positions_[+p] + positions_[+q]) / 2;
+          deepen(region.depth, middle, VertexId{-1}, to.nearest(middle, region.depth.lower));
+        }
+    if (region.depth.lower <= kOnSheet * largest_ || !is_inside(other, region.depth.point)) return false;
+    point_out(region.depth);
+    region.depth.upper = farthest + reach_of({}, region.vertices);
+    Overlap& overlap = out_.overlaps.emplace_back();
+    overlap.touching = touching;
+    if (mesh_.component(touching.front()[0]) != own)
+      for (auto& [a, b] : overlap.touching) std::swap(a, b);
+    overlap.depth = region.depth;
+    overlap.regions.push_back(std::move(region));
+    return true;
   }
 
   OverlapFinder& finder_;
@@ -421,12 +521,14 @@ class PoseOverlaps {
   std::span<const Vec3> exact_, positions_;
   double largest_;  // of the coordinates of `positions_`
   bool each_way_;
+  std::span<const CrossingPair> pairs_;  // that meet
   Overlaps out_;
   std::optional<Fragments> parts_;
   std::vector<Found> regions_;
   std::vector<std::int32_t> region_of_image_;   // [images], or kNone
   std::vector<std::vector<TriangleId>> sheet_;  // [images]
   std::map<std::int32_t, SheetDistance> to_component_;
+  std::map<std::pair<std::int32_t, std::int32_t>, SheetDistance> to_skin_;  // of the second, by the first
   std::vector<std::pair<VertexId, std::int32_t>> on_sheet_;  // with the component of that sheet; sorted
   std::map<std::pair<std::size_t, std::int32_t>, std::int32_t> sizes_;  // of parts of groups
   std::optional<SheetDistance> to_sheet_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,8 +31,11 @@ struct CrossingDepth {
 //
 // A curve lies on the two sheets that cross in it. Its course on one of them is an *image* of the curve:
 // image 2 c + s is that of curve c on sheet s, which is 0 or 1. Each vertex belongs to the image that is
-// nearest along edges. Its depth is the distance to what the same curve cuts off the other sheet: to all
-// triangles that have a vertex there, or that the curve runs through.
+// nearest along edges. Its depth is the distance to the skin that was gone through: to all triangles of the
+// other component that meet this one or have a vertex in it, flush walls among them. Within one component, it
+// is the distance to what the vertex's own curve cuts off: to all triangles that have a vertex there, or that
+// the curve runs through. A component that lies in another one altogether, and touches its wall, has no
+// curve.
 struct CrossingRegion {
   std::int32_t own = 0, other = 0;  // the components of this sheet and of the other
   // On which side of the curves the region lies. Behind the faces of the other sheet, inside a closed body;
@@ -57,6 +61,9 @@ struct CrossingRegion {
 // in each other.
 struct Overlap {
   std::vector<std::int32_t> curves;
+  // Without a curve: the pairs of triangles, one of each piece, in which one piece touches the wall of the
+  // other from within.
+  std::vector<std::array<TriangleId, 2>> touching;
   std::vector<CrossingRegion> regions;  // deepest first
   CrossingDepth depth;  // of the deepest region, or of an edge where no vertex lies in the other sheet
 };
@@ -67,11 +74,12 @@ struct Overlaps {
 };
 
 // Calls take(segment) for each pair of triangles, one of each sheet, through which the curves of an overlap
-// run.
+// run, or in which its pieces touch.
 template <class Take>
 void for_each_segment(const CrossingCurves& all, const Overlap& overlap, const Take& take) {
   for (const std::int32_t curve : overlap.curves)
     for (const auto& segment : all.curves[static_cast<std::size_t>(curve)].segments) take(segment);
+  for (const auto& segment : overlap.touching) take(segment);
 }
 
 // Finds what lies in what, one pose after another of one mesh. Where nothing crosses, a call does nothing.
@@ -79,7 +87,7 @@ class OverlapFinder {
  public:
   explicit OverlapFinder(const TriangleMesh& mesh) : mesh_(mesh), marks_(mesh) {}  // `mesh` must outlive it
 
-  // `pairs` are all pairs of triangles that cross in the pose, sorted. With `each_way` every vertex of every
+  // `pairs` are all pairs of triangles that meet in the pose, sorted. With `each_way` every vertex of every
   // region gets its way out. The answer does not depend on the unit of length: where all coordinates are
   // multiplied by a power of two, lengths are multiplied by the same power to the last digit. Where they
   // become subnormal they are rounded, and CrossingDepth::upper is rounded up.

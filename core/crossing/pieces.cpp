@@ -33,6 +33,15 @@ OverlapPieces::OverlapPieces(const TriangleMesh& mesh, const Overlaps& all,
       for (const VertexId v : region.vertices)
         for (const TriangleId t : mesh.triangles_at(v)) add(t, piece);
     }
+    const auto face = [&](std::uint32_t one, std::uint32_t other) {
+      facing_.push_back({in_halves(one, other), number[i]});
+      facing_.push_back({in_halves(other, one), number[i]});
+    };
+    if (const auto& touching = all.overlaps[i].touching; !touching.empty()) {
+      face(pieces - 1, pieces);  // the region, which takes all of a component, and the wall
+      for (const auto& segment : touching) add(segment[1], pieces);
+      ++pieces;
+    }
     for (const std::int32_t curve : all.overlaps[i].curves) {
       for (const std::int32_t sheet : {0, 1}) {
         std::vector<std::uint32_t>& here = pieces_at[2 * curve + sheet];
@@ -41,10 +50,7 @@ OverlapPieces::OverlapPieces(const TriangleMesh& mesh, const Overlaps& all,
           for (const std::uint32_t piece : here) add(segment[static_cast<std::size_t>(sheet)], piece);
       }
       for (const std::uint32_t one : pieces_at[2 * curve])
-        for (const std::uint32_t other : pieces_at[2 * curve + 1]) {
-          facing_.push_back({in_halves(one, other), number[i]});
-          facing_.push_back({in_halves(other, one), number[i]});
-        }
+        for (const std::uint32_t other : pieces_at[2 * curve + 1]) face(one, other);
     }
   }
   sort_unique(triangles_);
