@@ -79,6 +79,7 @@ class PoseOverlaps {
     choose_regions();
     for (std::size_t r = 0; r < regions_.size(); ++r) flood(r);
     gather_other_sheets();
+    gather_skins();
     for (std::size_t r = 0; r < regions_.size(); ++r) measure(r);
     group();
     for (const auto& [both, touching] : meeting)
@@ -233,25 +234,27 @@ class PoseOverlaps {
     });
   }
 
-  // Distances to the skin of one component that another one has gone through: to all triangles that meet the
-  // other one, or that have a vertex in a region there. Flush walls are among them.
-  const SheetDistance& to_skin(std::int32_t own, std::int32_t other) {
-    const auto known = to_skin_.find({own, other});
-    if (known != to_skin_.end()) {
-      known->second.start_anew();
-      return known->second;
-    }
-    std::vector<TriangleId> triangles;
+  // The skin of one component that another one has gone through: all triangles that meet the other one, or
+  // that have a vertex in a region there. Flush walls are among them.
+  void gather_skins() {
     for (const auto& [a, b] : pairs_) {
-      if (mesh_.component(a) == own && mesh_.component(b) == other) triangles.push_back(b);
-      if (mesh_.component(b) == own && mesh_.component(a) == other) triangles.push_back(a);
+      const std::int32_t of_a = mesh_.component(a), of_b = mesh_.component(b);
+      if (of_a == of_b) continue;
+      skin_[{of_a, of_b}].push_back(b);
+      skin_[{of_b, of_a}].push_back(a);
     }
     for (const Found& found : regions_)
-      if (found.region.own == other && found.region.other == own)
+      if (found.region.own != found.region.other)
         for (const VertexId v : found.region.vertices)
-          for (const TriangleId t : mesh_.triangles_at(v)) triangles.push_back(t);
-    sort_unique(triangles);
-    return to_skin_.try_emplace({own, other}, mesh_, positions_, triangles).first->second;
+          for (const TriangleId t : mesh_.triangles_at(v))
+            skin_[{found.region.other, found.region.own}].push_back(t);
+    for (auto& [both, triangles] : skin_) sort_unique(triangles);
+  }
+  const SheetDistance& to_skin(std::int32_t own, std::int32_t other) {
+    const std::pair both(own, other);
+    SheetDistance& to = to_skin_.try_emplace(both, mesh_, positions_, skin_.at(both)).first->second;
+    to.start_anew();
+    return to;
   }
   // Whether what a curve cuts off the other sheet of an image is not bounded (CrossingRegion::other_is_open).
   bool is_open_beyond(std::int32_t image) const {
@@ -528,7 +531,9 @@ class PoseOverlaps {
   std::vector<std::int32_t> region_of_image_;   // [images], or kNone
   std::vector<std::vector<TriangleId>> sheet_;  // [images]
   std::map<std::int32_t, SheetDistance> to_component_;
-  std::map<std::pair<std::int32_t, std::int32_t>, SheetDistance> to_skin_;  // of the second, by the first
+  // Of the second component, by the first.
+  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<TriangleId>> skin_;
+  std::map<std::pair<std::int32_t, std::int32_t>, SheetDistance> to_skin_;
   std::vector<std::pair<VertexId, std::int32_t>> on_sheet_;  // with the component of that sheet; sorted
   std::map<std::pair<std::size_t, std::int32_t>, std::int32_t> sizes_;  // of parts of groups
   std::optional<SheetDistance> to_sheet_;
