@@ -2,20 +2,22 @@
 
   scripts/record sets
   scripts/record sets --scene rope,fold    of these scenes alone
+  scripts/record sets --paper              and what the paper's method takes on plain x86-64 and on AVX2
 
 The library for AVX-512, AVX2 and plain x86-64 and its package for WebAssembly answer the same steps of the six scenes and of four
-cloths, in turns; answers that differ in a bit end the script with status 1. Then `cscd run` holds `drvbc_fast` against the paper's
-method on plain x86-64 and on AVX2, on the six scenes. Writes the record, and its page, to a new folder
-results/DATE-MACHINE-COMMIT-sets. Takes half an hour on 2 idle cores when everything is built, and ten minutes to build.
+cloths, in turns; answers that differ in a bit end the script with status 1. With --paper, `cscd run` holds `drvbc_fast` against the
+paper's method on the six scenes. Writes the record, and its page, to a new folder results/DATE-MACHINE-COMMIT-sets. Takes a quarter of
+an hour on 2 idle cores when everything is built, and ten minutes to build; --paper doubles both.
 """
 import json
 import os
 import statistics
+import subprocess
 import sys
 import tempfile
 
 from markdown import built, number, table
-from script import ROOT, SCENES, call, install, new_results, output_of, parser_of, with_setup
+from script import ROOT, SCENES, call, install, measured_program, new_results, output_of, parser_of, with_setup
 
 CLOTHS = ("sheet", "fold", "skirt", "bag")
 SETS = ("avx512", "avx2", "baseline")
@@ -24,11 +26,12 @@ TITLES = {"avx512": "AVX-512", "avx2": "AVX2", "baseline": "SSE2", NODE: "Node"}
 COLUMNS = (("avx512", "avx2"), ("baseline", "avx2"), (NODE, "baseline"))
 PAPER, FAST = "drvbc", "drvbc_fast"
 TESTS = ROOT / "library" / "js" / "test"
+LIBRARY, PROGRAM = ROOT / "build-isas", ROOT / "build-sets"
 
 
 def ours(name):
     """What this machine and this build have of a set: nothing, where the library refuses it by name."""
-    return os.environ | {"PYTHONPATH": str(ROOT / "build-sets" / "python"), "CSCD_ISA": name}
+    return os.environ | {"PYTHONPATH": str(LIBRARY / "python"), "CSCD_ISA": name}
 
 
 def has(name):
@@ -43,10 +46,10 @@ def answer(name, clip, passes):
     return json.loads(output_of("/usr/bin/python3", TESTS / "digest.py", clip, passes, env=ours(name)))
 
 
-def measured(scene, sets, steps, rounds, folder):
+def measured(cscd, scene, sets, steps, rounds, folder):
     """Milliseconds by question and set: medians over rounds. All sets have to give the same answers."""
     clip, rows, digests = folder / f"{scene}.bin", {}, {}
-    output_of("/usr/bin/python3", TESTS / "digest.py", clip, 0, ROOT / "build-sets" / "cscd", scene, 0, steps, env=ours(sets[0]))
+    output_of("/usr/bin/python3", TESTS / "digest.py", clip, 0, cscd, scene, 0, steps, env=ours(sets[0]))
     for turn in range(rounds):
         for name in sets if turn % 2 == 0 else sets[::-1]:
             said = answer(name, clip, 3)
@@ -64,8 +67,8 @@ def measured(scene, sets, steps, rounds, folder):
 def against_paper(scene, name, folder, smoke):
     """A record of `cscd run` on one set."""
     path = folder / "run.part.json"
-    call(ROOT / "build-sets" / "cscd", "run", scene, "--strategy", f"{PAPER},{FAST}", "--json", path, "--force",
-         *(["--smoke"] if smoke else []), env=ours(name), stdout=-3, stderr=-3)
+    call(PROGRAM / "cscd", "run", "--scene", scene, "--strategy", f"{PAPER},{FAST}", "--json", path, "--force",
+         *(["--smoke"] if smoke else []), env=ours(name), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     record = json.loads(path.read_text())
     path.unlink()
     return record
@@ -111,25 +114,33 @@ def page(data):
 def main():
     parser = parser_of(__doc__)
     parser.add_argument("--scene", metavar="NAMES", help="scenes with commas; default the six and four cloths")
+    parser.add_argument("--paper", action="store_true", help="the paper's method, too")
     parser.add_argument("--smoke", action="store_true", help="a few steps: shows that everything works; times mean nothing")
     options = parser.parse_args()
     chosen = options.scene.split(",") if options.scene else [*SCENES, *CLOTHS]
-    install("build", "compare", "figures", "tests")
-    with_setup('cmake -S . -B build-sets -G Ninja -DCMAKE_BUILD_TYPE=Release -DCSCD_ALL_ISAS=ON -DCSCD_NATIVE=OFF >/dev/null; '
-               'ninja -C build-sets cscd cscd_python', stdout=sys.stderr)
+    install("tests")
+    cscd = measured_program("a quarter of an hour")
+    for folder, settings, target in ((LIBRARY, "-DCSCD_LIBRARY_ONLY=ON", "cscd_python"), (PROGRAM, "-DCSCD_ALL_ISAS=ON", "cscd")):
+        if folder == LIBRARY or options.paper:
+            with_setup(f"cmake -S . -B {folder.name} -G Ninja -DCMAKE_BUILD_TYPE=Release {settings} >/dev/null; ninja -C {folder.name} {target}",
+                       stdout=sys.stderr)
     call(ROOT / "scripts" / "check", "wasm")
     sets = [name for name in SETS if has(name)] + [NODE]
     data = {"schema": "cscd.sets/1", "smoke": options.smoke, "rounds": 1 if options.smoke else 3, "sets": sets, "scenes": {}, "paper": {}}
     with new_results("sets" + "-smoke" * options.smoke) as folder, tempfile.TemporaryDirectory() as part:
         for scene in chosen:
-            data["scenes"][scene] = measured(scene, sets, 4 if options.smoke else 40, data["rounds"], type(folder)(part))
-        for scene in (name for name in chosen if name in SCENES):
+            data["scenes"][scene] = measured(cscd, scene, sets, 4 if options.smoke else 40, data["rounds"], type(folder)(part))
+        for scene in (name for name in chosen if options.paper and name in SCENES):
             by = data["paper"].setdefault(scene, {})
             for name in [name for name in sets if name in ("avx2", "baseline")]:
                 record = against_paper(scene, name, folder, options.smoke)
-                data.setdefault("environment", record["environment"])
                 times = {row["name"]: row for row in record["strategies"]}
                 by[name] = [times[row]["ms"]["total"] for row in (PAPER, FAST)]
             print(f"{scene}: against the paper's method", flush=True)
+        probe = folder / "probe.part.json"  # says where this is measured
+        call(cscd, "run", "--scene", "urchin", "--smoke", "--strategy", FAST, "--json", probe, stdout=subprocess.DEVNULL,
+             stderr=subprocess.DEVNULL)
+        data["environment"] = json.loads(probe.read_text())["environment"]
+        probe.unlink()
         (folder / "sets.json").write_text(json.dumps(data, indent=1) + "\n")
         (folder / "sets.md").write_text(page(data))
