@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bench/answer/answer_text.h"
+#include "bench/answer/event_text.h"
 #include "bench/answer/verdicts.h"
 #include "bench/output/json_text.h"
 #include "core/detect/contact_geometry.h"
@@ -255,14 +256,30 @@ json rest_json(const ClipAnswer& answer) {
           {"parts", std::move(parts)}};
 }
 
+json headline_json(const ClipAnswer& answer) {
+  const std::optional<std::size_t> worst = worst_event(answer);
+  if (!worst) return nullptr;
+  const OverlapEvent& event = answer.events[*worst];
+  json out = {{"event", *worst}, {"text", worst_text(answer.input, event)}};
+  const json all = event_json(answer.input, event);
+  for (const char* key : {"first", "second", "begins", "deepest", "ends", "depth", "at_rest"})
+    out[key] = all[key];
+  return out;
+}
+
 json summary_json(const ClipAnswer& answer) {
   const AnswerSummary& s = answer.summary;
   json strategies = json::array(), met = json::array(), ignored = json::array(), events = json::array(),
        first, worst;
   for (const OverlapEvent& event : answer.events) events.push_back(event_json(answer.input, event));
   for (const auto& [name, count] : s.strategies) strategies.push_back({{"name", name}, {"intervals", count}});
-  for (const auto& [names, count] : most_first(s.met))
-    met.push_back({{"first", names.first}, {"second", names.second}, {"intervals", count}});
+  std::map<NamePair, std::size_t> intervals;
+  for (const auto& [names, here] : s.met) intervals[names] = here.intervals;
+  for (const auto& [names, count] : most_first(intervals))
+    met.push_back({{"first", names.first},
+                   {"second", names.second},
+                   {"intervals", count},
+                   {"crosses", s.met.at(names).crosses}});
   for (const auto& [names, here] : s.ignored)
     ignored.push_back({{"first", names.first},
                        {"second", names.second},
@@ -277,7 +294,8 @@ json summary_json(const ClipAnswer& answer) {
   }
   json out = {
       {"verdict", to_string(s.verdict())},
-      {"sentence", verdict_sentence(answer)},
+      {"sentence", verdict_text(answer)},
+      {"headline", headline_json(answer)},
       {"intervals", s.intervals()},
       {"proven", s.proven},
       {"ms",

@@ -30,6 +30,9 @@ class ClipJson {
 // Writes members of the object that has begun. All of one object come in the order of their names.
 void write_members(JsonStream& out, const nlohmann::json& members);
 
+// The event of which the verdict speaks first; null for none.
+nlohmann::json headline_json(const ClipAnswer& answer);
+
 // The sums alone.
 nlohmann::json summary_json(const ClipAnswer& answer);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "bench/answer/event_text.h"
 #include "bench/answer/verdicts.h"
 #include "bench/inputs/input_options.h"
 #include "bench/inputs/thickness.h"
@@ -17,20 +18,6 @@ namespace {
 
 constexpr std::size_t kMostListed = 5;  // of pairs of names, in a text
 constexpr std::size_t kMostEvents = 10;
-
-// Frames of a long clip keep their hundredths.
-std::string frame_text(double value) {
-  return exact_text(std::round(100 * value) / 100);
-}
-
-std::string moment_text(const Input& input, const ClipMoment& moment) {
-  const std::optional<double> seconds = second_of(input, moment);
-  std::string text = "frame " + frame_text(frame_of(input, moment));
-  // Seconds count from the start of the clip, and frames from the start of the file's time line.
-  const bool late = input.import && frame_at(*input.import, 0) != 0;
-  if (seconds) text += " (" + short_text(*seconds) + (late ? " s into the clip)" : " s)");
-  return text;
-}
 
 // "eye_l in head: 96 pairs, teeth in head: 12 pairs, and 3 more".
 template <class Text>
@@ -111,12 +98,6 @@ std::string thickness_text(const ClipAnswer& answer) {
          " at rest";
 }
 
-// "1.2 cm" where the input tells its unit, else "0.0123".
-std::string distance_text(const Input& input, double length) {
-  const double unit = input.import ? input.import->centimetres_per_unit : 0;
-  return unit > 0 ? short_text(unit * length) + " cm" : short_text(length);
-}
-
 // What crosses at rest, in two kinds: parts that cross, and copies of one surface that lie on each other.
 struct AtRest {
   std::map<NamePair, std::size_t> crossing, coinciding;  // pairs of triangles
@@ -165,8 +146,8 @@ std::string apart_text(const ClipAnswer& answer) {
 
 std::string frames_text(const ClipAnswer& answer) {
   const AnswerSummary& s = answer.summary;
-  return " in frames " + frame_text(frame_of(answer.input, {s.first_index, 0})) + " to " +
-         frame_text(frame_of(answer.input, {s.last_index, 1}));
+  return " in frames " + frame_text(answer.input, {s.first_index, 0}) + " to " +
+         frame_text(answer.input, {s.last_index, 1});
 }
 
 // The predicate of a verdict about straight lines: one class a line.
@@ -220,6 +201,22 @@ std::string verdict_predicate(const ClipAnswer& answer) {
   return text;
 }
 
+// "These only touch: hand_l and hips, thigh_r and itself, and 2 more pairs." What has a thickness is close
+// before it touches, and there nothing is said.
+std::string only_touching_text(const ClipAnswer& answer) {
+  constexpr std::size_t kMost = 3;
+  if (answer.input.thickness.length > 0) return {};
+  std::map<NamePair, std::size_t> touching;
+  for (const auto& [both, here] : answer.summary.met)
+    if (!here.crosses) touching[both] = here.intervals;
+  const auto sorted = most_first(touching);
+  std::string out;
+  for (std::size_t i = 0; i < std::min(kMost, sorted.size()); ++i)
+    out += (i > 0 ? ", " : "") + meeting_text(sorted[i].first, "and");
+  if (sorted.size() > kMost) out += ", and " + many(sorted.size() - kMost, "more pair");
+  return out.empty() ? out : "These only touch: " + out + ".";
+}
+
 // What is said below the verdict, without full stops; empty where there is nothing to say.
 struct Sentences {
   std::string lines, counts, thickness, worst, met, ignored, rest, touching, coinciding, last, identical,
@@ -253,7 +250,11 @@ Sentences sentences(const ClipAnswer& answer) {
       out.worst += many(s.worst->start_pairs, "pair") + " of triangles cross at its start, and ";
     out.worst += many(s.worst->contacts, input.thickness.length > 0 ? "close pair" : "contact");
   }
-  if (!s.met.empty()) out.met = "met: " + listed(s.met, met_text);
+  if (!s.met.empty()) {
+    std::map<NamePair, std::size_t> intervals;
+    for (const auto& [both, here] : s.met) intervals[both] = here.intervals;
+    out.met = "met: " + listed(intervals, met_text);
+  }
   if (input.ignored) out.ignored = ignored_text(input, s);
   // A simulation that starts crossed has no pose at rest, and what it begins with may be what is looked
   // for. One pose alone is told by the verdict.
@@ -326,32 +327,6 @@ std::string identical_text(std::size_t triangles) {
          " the same three corners as another one: two such are never held against each other";
 }
 
-namespace {
-
-// Whether more is known of a depth than what it does not exceed.
-bool is_known(const CrossingDepth& depth) {
-  constexpr double kRounding = 1e-9;  // a share of the bound below which a depth is nothing but rounding
-  return depth.lower > kRounding * depth.upper;
-}
-
-}  // namespace
-
-std::string event_text(const Input& input, const OverlapEvent& event) {
-  std::string out = event.names.first + (event.crosses ? " in " : " touches ") +
-                    (event.names.first == event.names.second ? "itself" : event.names.second);
-  const std::string most = "at most " + distance_text(input, event.depth.upper);
-  if (is_known(event.depth))
-    out += ": " + distance_text(input, event.depth.lower) + " deep (" + most + ")";
-  else if (event.crosses)
-    out += ": " + most + " deep, depth not known";
-  if (event.at_rest) out += ", deeper than at rest (" + distance_text(input, *event.at_rest) + ")";
-  if (event.vertices > 0) out += ", " + many(event.vertices, "vertex");
-  const auto frame = [&](std::size_t interval) { return frame_text(frame_of(input, {interval, 0})); };
-  if (event.first == event.last) return out + ", frame " + frame(event.first);
-  return out + ", frames " + frame(event.first) + " to " + frame(event.last) + ", deepest at " +
-         frame(event.deepest);
-}
-
 DepthCheck check_depth(const ClipAnswer& answer, const WrittenLength& most) {
   const double length = most.length(answer.input.thickness.edge);
   const std::string limit = "--fail-deeper-than " + length_text(most, answer.input.thickness.edge) + ": ";
@@ -381,15 +356,31 @@ DepthCheck check_depth(const ClipAnswer& answer, const WrittenLength& most) {
   return {false, text};
 }
 
-std::string verdict_sentence(const ClipAnswer& answer) {
+std::vector<std::string> verdict_sentences(const ClipAnswer& answer) {
   const std::string predicate =
       answer.input.motion
           ? true_predicate(answer.input, answer.true_motion, frames_text(answer), exceptions_text(answer))
           : verdict_predicate(answer);
-  return subject_of(answer.input) + " " + predicate + ".";
+  std::string subject = subject_of(answer.input);
+  const std::optional<std::size_t> worst = worst_event(answer);
+  if (!worst) return {subject + " " + predicate + "."};
+  if (subject.ends_with(',')) subject.pop_back();
+  std::vector<std::string> out{subject + ": " + worst_text(answer.input, answer.events[*worst]) + "."};
+  if (const std::string touching = only_touching_text(answer); !touching.empty()) out.push_back(touching);
+  out.push_back("It " + predicate + ".");
+  return out;
+}
+
+std::string verdict_text(const ClipAnswer& answer) {
+  return joined(verdict_sentences(answer), " ");
 }
 
 namespace {
+
+// Each sentence on a line of its own.
+std::string verdict_lines(const ClipAnswer& answer) {
+  return joined(verdict_sentences(answer), "\n  ") + "\n";
+}
 
 std::string not_measured_text(const ClipAnswer& answer) {
   if (answer.not_measured == 0) return {};
@@ -430,7 +421,7 @@ std::string events_text(const ClipAnswer& answer) {
 std::string clip_text(const ClipAnswer& answer) {
   const AnswerSummary& s = answer.summary;
   const Sentences said = sentences(answer);
-  std::string out = verdict_sentence(answer) + "\n" + true_motion_text(answer.input, answer.true_motion);
+  std::string out = verdict_lines(answer) + true_motion_text(answer.input, answer.true_motion);
   for (const std::string* line :
        {&said.lines, &said.counts, &said.thickness, &said.worst, &said.met, &said.ignored, &said.rest,
         &said.touching, &said.coinciding, &said.last, &said.identical, &said.proven})
@@ -444,15 +435,20 @@ std::string clip_text(const ClipAnswer& answer) {
 }
 
 std::string brief_clip_text(const ClipAnswer& answer) {
-  std::string out = verdict_sentence(answer) + "\n" + not_measured_text(answer);
+  std::string out = verdict_lines(answer) + not_measured_text(answer);
   const Sentences said = sentences(answer);
   if (answer.summary.proven < answer.summary.intervals()) out += "  " + said.proven + "\n";
   for (const std::string* line :
        {&said.ignored, &said.rest, &said.touching, &said.coinciding, &said.last, &said.identical})
     if (!line->empty()) out += "  " + *line + "\n";
-  if (!answer.events.empty())
-    out += "  " + places_text(answer.events) +
-           ", deepest: " + event_text(answer.input, answer.events[deepest_first(answer.events)[0]]) + "\n";
+  if (!answer.events.empty()) {
+    const std::size_t deepest = deepest_first(answer.events)[0];
+    out +=
+        "  " + places_text(answer.events) +
+        (worst_event(answer) == deepest ? std::string()
+                                        : ", deepest: " + event_text(answer.input, answer.events[deepest])) +
+        "\n";
+  }
   if (answer.input.motion) out += true_motion_text(answer.input, answer.true_motion);
   return out;
 }

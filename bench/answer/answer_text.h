@@ -8,9 +8,12 @@
 // Answers as text.
 namespace cscd::bench {
 
-// One sentence that says what was asked about, does it touch or cross itself, how often, and when first.
-// Texts, pages and JSON all show this sentence.
-std::string verdict_sentence(const ClipAnswer& answer);
+// Says what was asked about and, in this order, what lies deepest in the surface, what only touches, how
+// often it touches or crosses itself, and when first: one to three sentences. Texts, pages and JSON all show
+// these.
+std::vector<std::string> verdict_sentences(const ClipAnswer& answer);
+// The same as one text.
+std::string verdict_text(const ClipAnswer& answer);
 
 // Several lines, the verdict first.
 std::string clip_text(const ClipAnswer& answer);
@@ -29,9 +32,6 @@ struct DepthCheck {
   std::string text;
 };
 DepthCheck check_depth(const ClipAnswer& answer, const WrittenLength& most);
-
-// "hand_l in thigh_l: 1.2 cm deep (at most 1.9 cm), 38 vertices, frames 12 to 31, deepest at 20".
-std::string event_text(const Input& input, const OverlapEvent& event);
 
 // Says of so many triangles (identical_triangles) what is not said of them.
 std::string identical_text(std::size_t triangles);

@@ -9,6 +9,7 @@ namespace cscd::bench {
 namespace {
 
 struct Said {
+  std::vector<std::string> sentences;
   std::string sentence, text;
   DepthCheck depth;  // at most 0.1 deep
 };
@@ -17,7 +18,8 @@ Said said(Input input, const AnswerRequest& request = {}) {
   ClipAnswerer asked(request, std::move(input));
   asked.answer_all("test", false, [](const AnsweredPose&) {});
   const ClipAnswer& answer = asked.answers().front();
-  return {verdict_sentence(answer), clip_text(answer), check_depth(answer, {.text = "0.1", .number = 0.1})};
+  return {verdict_sentences(answer), verdict_text(answer), clip_text(answer),
+          check_depth(answer, {.text = "0.1", .number = 0.1})};
 }
 
 bool has(const std::string& text, const std::string& part) {
@@ -35,10 +37,10 @@ TEST(AnswerText, SaysWhatAClipDoesAndWhen) {
   EXPECT_EQ(said(two_balls({0, 0.5})).sentence, "test does not touch itself in frames 0 to 1.");
   EXPECT_EQ(said(two_balls({0, 0})).sentence,
             "test does not move in frames 0 to 1, and does not touch itself.");
-  EXPECT_EQ(
-      said(two_balls({0, -1.2, 0})).sentence,
-      "test crosses itself at the start of 1 of 2 intervals and touches itself in 1 more, first at frame "
-      "0.9: component 0 touches component 1.");
+  EXPECT_EQ(said(two_balls({0, -1.2, 0})).sentence,
+            "test: component 1 is 0.1156 deep in component 0, at frame 1 alone. It crosses itself at the "
+            "start of 1 of 2 intervals and touches itself in 1 more, first at frame 0.9: component 0 touches "
+            "component 1.");
   EXPECT_EQ(
       said(two_balls({-1.2, -1.3, 0})).sentence,
       "test touches itself in frames 0 to 2 only in what crosses at rest, which comes to lie deeper than "
@@ -46,8 +48,48 @@ TEST(AnswerText, SaysWhatAClipDoesAndWhen) {
   AnswerRequest kept;
   kept.answers.keep_rest_crossings = true;
   EXPECT_EQ(said(two_balls({-1.2, -1.3, 0}), kept).sentence,
-            "test crosses itself at the start of 2 of 2 intervals, first at frame 0: component 0 crosses "
-            "component 1.");
+            "test: component 1 is 0.21 deep in component 0, deepest at frame 1 (frames 0 to 1). It crosses "
+            "itself at the start of 2 of 2 intervals, first at frame 0: component 0 crosses component 1.");
+}
+
+// Three balls: the second dips into the first twice, deeper the second time, and the third flies through the
+// first between two frames.
+Input three_balls() {
+  const test::Shape ball = test::icosphere(1);
+  const test::Shape all = test::together(test::together(ball, test::moved(ball, {3, 0.1, 0.2})),
+                                         test::moved(ball, {0.1, 0.2, 3}));
+  const std::size_t n = ball.positions.size();
+  std::vector<std::vector<Vec3>> frames;
+  for (const auto& [second, third] : {std::pair(0.0, 0.0),
+                                      {0.0, -6.0},
+                                      {-1.2, -6.0},
+                                      {0.0, -6.0},
+                                      {-1.3, -6.0},
+                                      {-1.4, -6.0},
+                                      {0.0, -6.0}}) {
+    frames.push_back(all.positions);
+    for (std::size_t v = 0; v < n; ++v)
+      frames.back()[n + v].x() += second, frames.back()[2 * n + v].z() += third;
+  }
+  return input_of(all, frames);
+}
+
+// Mutations: the first contact stays first; what begins first, or lies less deep, is taken for the worst;
+// what crosses is said only to touch.
+TEST(AnswerText, SaysTheWorstFirst) {
+  const Said found = said(three_balls());
+  EXPECT_EQ(found.sentence,
+            "test: component 1 is 0.3043 deep in component 0, deepest at frame 5 (frames 4 to 5). These only "
+            "touch: component 0 and component 2. It crosses itself at the start of 3 of 6 intervals and "
+            "touches itself in 3 more, first at frame 0.18: component 2 touches component 0.");
+  EXPECT_EQ(found.text.find(found.sentences[0] + "\n  " + found.sentences[1] + "\n  " + found.sentences[2]),
+            0u)
+      << found.text;
+  AnswerRequest fresh;
+  fresh.new_contacts = true;
+  EXPECT_EQ(said(three_balls(), fresh).sentence,
+            "test touches itself in 3 of 6 intervals, apart from what lies in itself already, first at frame "
+            "0.18: component 2 touches component 0.");
 }
 
 // Mutation: what comes close is said to touch.
@@ -65,17 +107,17 @@ TEST(AnswerText, SaysHowNearThingsCome) {
       << close.text;
   EXPECT_TRUE(has(close.text, "left out (--exclude-rings 3), and 0 others are this close at rest"))
       << close.text;
-  EXPECT_EQ(
-      said(two_balls({0, -1.2}), thick).sentence,
-      "test touches itself in 1 of 1 interval, first at frame 0.46: component 0 comes close to component "
-      "1.");
+  EXPECT_EQ(said(two_balls({0, -1.2}), thick).sentence,
+            "test: component 1 is 0.1156 deep in component 0, at frame 1 alone. It touches itself in 1 of 1 "
+            "interval, first at frame 0.46: component 0 comes close to component 1.");
 }
 
 // Mutation: the pose is called an interval.
 TEST(AnswerText, SaysWhatOnePoseIs) {
   EXPECT_EQ(said(one_pose(0)).sentence, "test does not touch itself in its one pose.");
   EXPECT_EQ(said(one_pose(-1.2)).sentence,
-            "test crosses itself in its one pose: 12 pairs of triangles, component 0 crosses component 1.");
+            "test: component 1 is 0.1156 deep in component 0. It crosses itself in its one pose: 12 pairs of "
+            "triangles, component 0 crosses component 1.");
 }
 
 // Mutation: the last pose is not looked at.

@@ -73,20 +73,25 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
   if (!worst || std::tie(answer.start.total, contacts) > std::tie(worst->start_pairs, worst->contacts))
     worst = Worst{moment, answer.start.total, contacts};
 
-  std::set<NamePair> here;
-  const auto meet = [&](TriangleId a, TriangleId b) {
+  std::map<NamePair, bool> here;  // whether they cross
+  const auto meet = [&](TriangleId a, TriangleId b, bool crosses) {
     std::string x = names.place_of(a), y = names.place_of(b);
     if (!first) first = Meeting{moment, how, {x, y}};
     if (parted_ && !first_after_parting) first_after_parting = Meeting{moment, how, {x, y}};
-    here.insert(in_order(std::move(x), std::move(y)));
+    bool& one = here[in_order(std::move(x), std::move(y))];
+    one = one || crosses;
   };
-  for (const Crossings* pairs : {&answer.start, &answer.start_touching})
-    for (const CrossingPair& pair : pairs->pairs) meet(pair.first, pair.second);
+  for (const CrossingPair& pair : answer.start.pairs) meet(pair.first, pair.second, true);
+  for (const CrossingPair& pair : answer.start_touching.pairs) meet(pair.first, pair.second, false);
   for (const Contact& contact : answer.found.contacts)
     if (contact.verdict == Verdict::contact)
-      meet(names.triangle_of(contact.pair, false), names.triangle_of(contact.pair, true));
+      meet(names.triangle_of(contact.pair, false), names.triangle_of(contact.pair, true), false);
   if (!first) first = Meeting{moment, how, {"the surface", "the surface"}};
-  for (const NamePair& both : here) ++met[both];
+  for (const auto& [both, crosses] : here) {
+    Met& entry = met[both];
+    ++entry.intervals;
+    entry.crosses = entry.crosses || crosses;
+  }
 }
 
 void AnswerSummary::add_ignored(const IntervalAnswer& answer, const SurfaceNames& names) {

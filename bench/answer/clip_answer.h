@@ -52,8 +52,12 @@ struct AnswerSummary {
     std::size_t start_pairs = 0, contacts = 0;
   };
   std::optional<Worst> worst;
-  // Bones, or else parts, that met: in how many intervals.
-  std::map<NamePair, std::size_t> met;
+  // Bones, or else parts, that met.
+  struct Met {
+    std::size_t intervals = 0;
+    bool crosses = false;  // whether triangles of both cross at any start; else they only touch or come close
+  };
+  std::map<NamePair, Met> met;
   // What is ignored, by bones or else parts.
   struct IgnoredHere {
     std::size_t intervals = 0, start_pairs = 0, contacts = 0;

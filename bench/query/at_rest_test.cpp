@@ -210,7 +210,10 @@ TEST_F(AtRest, OnePoseIsAnsweredByItself) {
   EXPECT_EQ(crossed["intervals"].size(), 1u);
   EXPECT_EQ(crossed["last_pose"], nullptr);
   EXPECT_EQ(crossed["summary"]["verdict"], "intersects_at_start");
-  EXPECT_TRUE(has(sentence(crossed), "lone.obj crosses itself in its one pose: ")) << sentence(crossed);
+  EXPECT_TRUE(has(sentence(crossed),
+                  "lone.obj: the surface, component 1 is 0.25 deep in the surface, component 0. It crosses "
+                  "itself in its one pose: "))
+      << sentence(crossed);
   EXPECT_NEAR(crossed["summary"]["events"][0]["depth"]["at_least"].get<double>(), 0.25, 1e-12);
   EXPECT_EQ(sentence(free), "lone.7.obj does not touch itself in its one pose.");
   EXPECT_EQ(run("cscd query lone.obj --fail-deeper-than 0.2").status, 3);

@@ -397,7 +397,7 @@ void export_answers(ClipAnswerer& asked, const fs::path& output, const std::stri
   else
     export_usd(asked, output, force);
   print_counts(asked.input(), asked.range());
-  std::printf("%s\n", verdict_sentence(asked.answers().front()).c_str());
+  std::printf("%s\n", verdict_text(asked.answers().front()).c_str());
 }
 
 }  // namespace cscd::bench

@@ -49,6 +49,7 @@ struct Said {
   IntervalVerdict verdict = IntervalVerdict::clear;  // the worst of any clip
   bool too_deep = false;                             // for --fail-deeper-than
   std::vector<std::string> apart;                    // clips that the verdict does not count, as sentences
+  json headline;                                     // of a clip
 };
 
 Said say_clip(const QueryOptions& options, Input input, JsonStream* document, bool is_brief = false) {
@@ -65,6 +66,7 @@ Said say_clip(const QueryOptions& options, Input input, JsonStream* document, bo
   Said said;
   said.verdict = answer.verdict();
   said.apart = verdict_exceptions(answer);
+  said.headline = headline_json(answer);
   if (options.fail_deeper_than.is_given()) {
     const DepthCheck check = check_depth(answer, options.fail_deeper_than);
     said.too_deep = check.fails;
@@ -76,15 +78,20 @@ Said say_clip(const QueryOptions& options, Input input, JsonStream* document, bo
 // What the verdicts of all clips come to, as a sentence and in JSON.
 class AllVerdicts {
  public:
-  void add(const std::string& clip, IntervalVerdict verdict, const std::vector<std::string>& apart) {
-    apart_.insert(apart.begin(), apart.end());
-    counts_.add(verdict);
-    names_[verdict].push_back(clip);
-    if (verdict == IntervalVerdict::clear) (apart.empty() ? untouched_ : left_out_).push_back(clip);
+  void add(const std::string& clip, std::size_t number, const Said& said) {
+    apart_.insert(said.apart.begin(), said.apart.end());
+    counts_.add(said.verdict);
+    names_[said.verdict].push_back(clip);
+    if (said.verdict == IntervalVerdict::clear) (said.apart.empty() ? untouched_ : left_out_).push_back(clip);
+    if (said.headline.is_null() || !(excess(said.headline) > excess(headline_))) return;
+    headline_ = said.headline;
+    headline_["clip"] = number;
+    worst_ = clip;
   }
   void pass_over(const std::string& clip) { still_.push_back(clip); }
   std::string sentence(const std::string& input) {
     std::string text;
+    if (!headline_.is_null()) text = " in '" + worst_ + "' " + headline_["text"].get<std::string>();
     const auto say = [&](const std::vector<std::string>& names, const char* one, const char* several) {
       if (names.empty()) return;
       text += (text.empty() ? " " : "; ") + std::to_string(names.size()) + " " +
@@ -106,16 +113,25 @@ class AllVerdicts {
   // The clips that are close are counted where there is a thickness.
   json as_json(const std::string& input, bool is_thick) {
     json out = counts_json(counts_, is_thick);
-    out.update({{"sentence", sentence(input)}, {"passed_over", still_.size()}});
+    out.update({{"sentence", sentence(input)}, {"headline", headline_}, {"passed_over", still_.size()}});
     return out;
   }
 
  private:
+  // How much deeper something lies than it does at rest.
+  static double excess(const json& headline) {
+    if (headline.is_null()) return 0;
+    const json& at_rest = headline["at_rest"];
+    return headline["depth"]["at_least"].get<double>() - (at_rest.is_null() ? 0 : at_rest.get<double>());
+  }
+
   VerdictCounts counts_;
   std::map<IntervalVerdict, std::vector<std::string>> names_;  // of clips, by their verdicts
   std::vector<std::string> untouched_, left_out_;  // of the clear ones: those without and with exceptions
   std::vector<std::string> still_;
   std::set<std::string> apart_;
+  json headline_;  // the worst of all clips
+  std::string worst_;
 };
 
 // Answers the clips of a model file, one after the other.
@@ -132,7 +148,7 @@ Said say_all_clips(const QueryOptions& options, Input first, JsonStream* documen
   AllVerdicts verdicts;
   const auto take = [&](std::size_t clip, Input input) {
     const Said one = say_clip(options, std::move(input), document, seen.clips.size() > 1);
-    verdicts.add(seen.clips[clip].name, one.verdict, one.apart);
+    verdicts.add(seen.clips[clip].name, clip, one);
     if (collides(one.verdict)) all.verdict = one.verdict;
     all.too_deep = all.too_deep || one.too_deep;
   };

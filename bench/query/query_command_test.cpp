@@ -65,6 +65,12 @@ TEST_F(Query, SaysHowDeepItLiesInItself) {
   double deepest = 0;
   for (const json& event : events) deepest = std::max(deepest, event["depth"]["at_least"].get<double>());
   ASSERT_GT(deepest, 0);
+  const json summary = answer("figure.glb --clip hug")["summary"], &headline = summary["headline"];
+  EXPECT_EQ(headline["depth"]["at_least"], deepest);
+  const json& event = events[headline["event"].get<std::size_t>()];
+  for (const char* key : {"first", "second", "begins", "deepest", "ends", "depth", "at_rest"})
+    EXPECT_EQ(headline[key], event[key]) << key;
+  EXPECT_TRUE(has(summary["sentence"], ": " + headline["text"].get<std::string>() + ". "));
   const auto status = [&](const std::string& length) {
     return run("cscd query figure.glb --clip hug --fail-deeper-than " + length).status;
   };
@@ -86,6 +92,8 @@ TEST_F(Query, CountsNewContactsAloneWhereThatIsAsked) {
   EXPECT_GT(fresh["old"]["contacts"], 0);
   EXPECT_GT(fresh["old"]["start_pairs"], 0);
   EXPECT_EQ(all["old"]["contacts"], 0);
+  EXPECT_TRUE(all["headline"].is_object());
+  EXPECT_TRUE(fresh["headline"].is_null()) << "what is left out is not what is said first";
   EXPECT_LT(fresh["intersects_at_start"], all["intersects_at_start"]);
   EXPECT_EQ(fresh["events"], all["events"]) << "what is left out is known all the same";
   expect_refused(run("cscd query figure.glb --clip hug --new-contacts --first"),
@@ -134,7 +142,7 @@ TEST_F(Query, SpeaksOfACharacterInItsOwnNamesAndTimes) {
                   "1 s as 31 frames, from frame 0 to 30, 30 frames a second, because the file does "
                   "not say (--fps); drives 4 of "))
       << ran.out;
-  EXPECT_TRUE(has(ran.out, "\nfigure.glb, clip 'hug' (2nd of 2 clips), ")) << ran.out;
+  EXPECT_TRUE(has(ran.out, "\nfigure.glb, clip 'hug' (2nd of 2 clips): left_arm_2 is ")) << ran.out;
   EXPECT_TRUE(has(ran.out, "all 4 components")) << ran.out;
   EXPECT_TRUE(has(ran.out, "first at frame ")) << ran.out;
   EXPECT_TRUE(has(ran.out, "right_eye in skin: ") && has(ran.out, "left_eye in skin: ")) << ran.out;
@@ -205,13 +213,20 @@ TEST_F(Query, AnswersAllClipsUnlessOneIsNamed) {
   EXPECT_EQ(unnamed["summary"], named["summary"]);
   ASSERT_EQ(unnamed["clips"].size(), 2u);
   const Ran ran = run("cscd query figure.glb");
-  const char* const kNamed[] = {"figure.glb, clip 'walk' (1st of 2 clips), ",
-                                "figure.glb, clip 'hug' (2nd of 2 clips), "};
+  const char* const kNamed[] = {"figure.glb, clip 'walk' (1st of 2 clips)",
+                                "figure.glb, clip 'hug' (2nd of 2 clips)"};
   std::size_t at = 0;
   for (std::size_t c = 0; c < 2; ++c) {
     const std::string sentence = unnamed["clips"][c]["summary"]["sentence"];
     EXPECT_EQ(sentence.find(kNamed[c]), 0u) << sentence;
-    at = ran.out.find("\n" + sentence + "\n", at);
+    // The worst has a line of its own.
+    const json& headline = unnamed["clips"][c]["summary"]["headline"];
+    const bool crosses = unnamed["clips"][c]["summary"]["verdict"] == "intersects_at_start";
+    ASSERT_EQ(headline.is_object(), crosses);
+    const std::string first =
+        crosses ? kNamed[c] + (": " + headline["text"].get<std::string>()) + "." : sentence;
+    EXPECT_EQ(sentence.find(first), 0u) << sentence;
+    at = ran.out.find("\n" + first + "\n", at);
     EXPECT_NE(at, std::string::npos) << "no '" << sentence << "' in " << ran.out;
   }
   EXPECT_NE(ran.out.find("\n" + unnamed["summary"]["sentence"].get<std::string>() + "\n", at),
@@ -220,6 +235,13 @@ TEST_F(Query, AnswersAllClipsUnlessOneIsNamed) {
   EXPECT_TRUE(has(ran.out, "--clip NAME says more of one"));
   EXPECT_TRUE(has(unnamed["summary"]["sentence"], "figure.glb, 2 clips in all: ")) << unnamed["summary"];
   EXPECT_TRUE(has(unnamed["summary"]["sentence"], "('hug')")) << unnamed["summary"];
+  // The worst of all clips comes first.
+  json worst = unnamed["clips"][1]["summary"]["headline"];
+  EXPECT_TRUE(
+      has(unnamed["summary"]["sentence"], "in all: in 'hug' " + worst["text"].get<std::string>() + "; "))
+      << unnamed["summary"];
+  worst["clip"] = 1;
+  EXPECT_EQ(unnamed["summary"]["headline"], worst);
   EXPECT_TRUE(has(unnamed["summary"]["sentence"], "; all of this apart from what crosses at rest."));
   expect_refused(run("cscd query figure.glb --frames 0:1"), "has 2; name one with --clip");
 

@@ -9,10 +9,10 @@ export class Captions {
   constructor(recording) { this.recording = recording; }
 
   // The sentences are made where the answers are (bench/answer/answer_text.h).
-  sayVerdict({ summary, details }) {
+  sayVerdict({ summary, sentences: [headline, ...others], details }) {
     const verdict = byId("verdict");
     verdict.className = isBad(summary) ? "bad" : isOpen(summary) ? "" : "good";
-    verdict.replaceChildren(element("span", `${markOf(summary)} `, "mark"), document.createTextNode(summary.sentence));
+    verdict.replaceChildren(element("span", `${markOf(summary)} `, "mark"), document.createTextNode(headline), element("span", others.map((sentence) => ` ${sentence}`).join(""), "others"));
     byId("details").textContent = details;
     document.title = `${this.recording.header.name}: cscd view`;
   }

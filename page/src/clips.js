@@ -1,14 +1,21 @@
-// A page of several clips shows one of them. The address says which, as in horse.html#clip=3; without it, the first that touches
-// or crosses itself. To show another clip the page is opened anew, because everything on it belongs to one clip.
+// A page of several clips shows one of them. The address says which, as in horse.html#clip=3; without it, the one in which the
+// surface lies deepest in itself, or where nothing does, the first that touches itself. To show another clip the page is opened anew, because everything on it belongs to one clip.
 import { byId, element } from "./dom.js";
 import { markOf } from "./words.js";
 
 const summaryOf = (clip) => clip.strategies[0].summary;
 
+// How much deeper something lies in a clip than at rest; 0 where no depth is known.
+function depthIn(clip) {
+  const { headline } = summaryOf(clip);
+  return headline ? headline.depth.at_least - (headline.at_rest ?? 0) : 0;
+}
+
 export function chosenClip({ clips }) {
   const named = Number(/[#&]clip=(\d+)/.exec(window.location.hash)?.[1] ?? NaN);
   if (named >= 0 && named < clips.length) return named;
-  return Math.max(0, clips.findIndex((clip) => summaryOf(clip).verdict !== "clear"));
+  const deepest = clips.reduce((a, b) => Math.max(a, depthIn(b)), 0);
+  return Math.max(0, clips.findIndex((clip) => (deepest > 0 ? depthIn(clip) === deepest : summaryOf(clip).verdict !== "clear")));
 }
 
 export function offerClips(header) {

@@ -1,6 +1,6 @@
 // The list of moments, with the contacts of the chosen one below it.
 import { element } from "./dom.js";
-import { momentsOf, namesOf, timeOf, truthsOf } from "./moments.js";
+import { momentOfEvent, momentsOf, namesOf, openingOf, timeOf, truthsOf } from "./moments.js";
 import { both, contactVerb, contactWord, many, momentText } from "./words.js";
 
 const MOST_ROWS = 1500;  // browsers grow slow with more
@@ -49,7 +49,7 @@ export class MomentList {
     if (moments.length === 0) rows.push(element("p", (strategy.close ? "Nothing comes close" : "Nothing touches") + lines + "."));
     const events = this.recording.events.slice(0, MOST_EVENTS).map((event) => {
       const row = element("button", undefined, "event");
-      row.moment = { interval: event.deepest, event };
+      row.moment = momentOfEvent(event);
       row.append(element("span", event.text, "what"));
       return row;
     });
@@ -61,7 +61,7 @@ export class MomentList {
       row.append(element("span", moment.truth.text, "what"), element("span", momentText(this.recording, moment.interval + moment.truth.at), "when"));
       return row;
     });
-    [this.first] = [...truthsOf(this.recording), ...moments];
+    this.opening = openingOf(this.recording, strategy);
     this.box.replaceChildren(...truths, ...events, ...rows);
   }
 
@@ -96,7 +96,7 @@ export class MomentList {
     if (row === this.current) return;  // whoever scrolls away from it may stay there
     const opens = this.current === undefined;
     this.current = row;
-    if (opens && chosen.interval === this.first?.interval) return;  // a page opens at the top of its list, which says what lies deepest
+    if (opens && chosen.interval === this.opening?.interval) return;  // a page opens at the top of its list, which says what lies deepest
     const place = row.getBoundingClientRect(), frame = this.box.getBoundingClientRect();
     if (place.top < frame.top || place.bottom > frame.bottom) this.box.scrollTop += place.top - frame.top - 60;
   }

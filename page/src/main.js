@@ -8,7 +8,7 @@ import { byId, prefersDark, setDark } from "./dom.js";
 import { Framing } from "./framing.js";
 import { MomentList } from "./list.js";
 import { Marker } from "./marker.js";
-import { momentsOf, timeOf, truthsOf } from "./moments.js";
+import { momentsOf, openingOf, timeOf } from "./moments.js";
 import { modesOf, Painter } from "./painter.js";
 import { Stage } from "./stage.js";
 import { Timeline } from "./timeline.js";
@@ -65,8 +65,8 @@ class Viewer {
 
   open() {
     if (this.openLinked()) return;
-    const [first] = [...truthsOf(this.recording), ...this.moments];
-    if (first) this.select(first, false);
+    const moment = openingOf(this.recording, this.active);
+    if (moment) this.select(moment, false);
     else {
       this.seek(Math.round(this.recording.intervals / 3));  // in motion, and not at rest
       this.showWhole(false);

@@ -29,5 +29,14 @@ export function namesOf({ texts, place }, strategy, moment) {
 export const truthsOf = ({ truths, endOfInterval }) =>
   Array.from(truths?.values() ?? []).filter((truth) => endOfInterval.has(truth.interval)).map((truth) => ({ interval: truth.interval, truth }));
 
+// The moment of an event, at the start where it is deepest.
+export const momentOfEvent = (event) => ({ interval: event.deepest, event });
+
+// The moment at which a page opens: that of which the verdict speaks first. Undefined where nothing happens.
+export function openingOf(recording, strategy) {
+  const number = strategy.summary.headline?.event, worst = recording.events.find((event) => event.number === number);
+  return worst ? momentOfEvent(worst) : [...truthsOf(recording), ...momentsOf(strategy)][0];
+}
+
 // When a moment is, in its interval.
 export const timeOf = (strategy, moment) => (moment.truth ? moment.truth.at : moment.event ? moment.event.time : moment.contact === undefined ? 0 : strategy.contact_time[moment.contact] / 65535);

@@ -49,6 +49,17 @@ try {
   require((await page.evaluate(() => document.getElementById("list").scrollTop)) === 0, "the list does not open at its top");
   await picture("opening");
 
+  // It opens at what the verdict speaks of first.
+  const opening = await page.evaluate(() => {
+    const { active, recording, position, mode } = window.cscd, { headline } = active.summary;
+    return headline && { at: position, deepest: headline.deepest.interval + headline.deepest.time - recording.clip.first_interval, mode, text: headline.text };
+  });
+  if (opening) {
+    require(opening.at === opening.deepest, `the page opens at ${opening.at} and not where it is deepest, at ${opening.deepest}`);
+    require(opening.mode === "depth", "the page does not open in colours of depth");
+    require(said.includes(opening.text) && said.indexOf(opening.text) < said.indexOf(" itself "), `the verdict does not begin with the worst: ${said}`);
+  }
+
   // A page without contact shows the surface of every frame, and its camera stays.
   if (await page.evaluate(() => window.cscd.moments.length === 0)) {
     const outside = await page.evaluate(() => {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/answer/answer_text.h"
+#include "bench/answer/event_text.h"
 
 namespace cscd::bench {
 

@@ -207,6 +207,7 @@ json StrategyRecording::write(Sections& sections, const std::string& prefix) con
           {"covers", observers_.size()},
           {"has_patches", !patch_.empty()},
           {"summary", summary_json(answer_)},
+          {"sentences", verdict_sentences(answer_)},
           {"details", details_text(answer_)},
           {"text", clip_text(answer_)}};
 }
