@@ -131,7 +131,8 @@ const char* side_name(CrossingRegion::Side side) {
   return side == Side::behind ? "behind" : side == Side::before ? "before" : "smaller";
 }
 
-json event_json(const Input& input, const OverlapEvent& event) {
+json event_json(const ClipAnswer& answer, const OverlapEvent& event) {
+  const Input& input = answer.input;
   const auto moment = [&](std::size_t interval) { return moment_json(input, {interval, 0}); };
   return {{"first", event.names.first},
           {"second", event.names.second},
@@ -149,6 +150,7 @@ json event_json(const Input& input, const OverlapEvent& event) {
           {"pairs", event.pairs},
           {"curves", event.curves},
           {"crosses", event.crosses},
+          {"at_joint", answer.joints.fold(event)},
           {"contacts", event.contacts},
           {"depth_at", event.depth_at}};
 }
@@ -261,7 +263,7 @@ json headline_json(const ClipAnswer& answer) {
   if (!worst) return nullptr;
   const OverlapEvent& event = answer.events[*worst];
   json out = {{"event", *worst}, {"text", worst_text(answer.input, event)}};
-  const json all = event_json(answer.input, event);
+  const json all = event_json(answer, event);
   for (const char* key : {"first", "second", "begins", "deepest", "ends", "depth", "at_rest"})
     out[key] = all[key];
   return out;
@@ -270,8 +272,8 @@ json headline_json(const ClipAnswer& answer) {
 json summary_json(const ClipAnswer& answer) {
   const AnswerSummary& s = answer.summary;
   json strategies = json::array(), met = json::array(), ignored = json::array(), events = json::array(),
-       first, worst;
-  for (const OverlapEvent& event : answer.events) events.push_back(event_json(answer.input, event));
+       first, named, worst;
+  for (const OverlapEvent& event : answer.events) events.push_back(event_json(answer, event));
   for (const auto& [name, count] : s.strategies) strategies.push_back({{"name", name}, {"intervals", count}});
   std::map<NamePair, std::size_t> intervals;
   for (const auto& [names, here] : s.met) intervals[names] = here.intervals;
@@ -279,7 +281,9 @@ json summary_json(const ClipAnswer& answer) {
     met.push_back({{"first", names.first},
                    {"second", names.second},
                    {"intervals", count},
-                   {"crosses", s.met.at(names).crosses}});
+                   {"contacts", s.met.at(names).contacts},
+                   {"start_pairs", s.met.at(names).start_pairs},
+                   {"at_joint", answer.only_folds(names)}});
   for (const auto& [names, here] : s.ignored)
     ignored.push_back({{"first", names.first},
                        {"second", names.second},
@@ -287,6 +291,10 @@ json summary_json(const ClipAnswer& answer) {
                        {"start_pairs", here.start_pairs},
                        {"contacts", here.contacts}});
   if (s.first) first = moment_json(answer.input, s.first->moment);
+  if (const AnswerSummary::Meeting* const meeting = answer.first_named()) {
+    named = moment_json(answer.input, meeting->moment);
+    named["first"] = meeting->names.first, named["second"] = meeting->names.second;
+  }
   if (s.worst) {
     worst = moment_json(answer.input, s.worst->moment);
     worst["start_pairs"] = s.worst->start_pairs;
@@ -309,6 +317,7 @@ json summary_json(const ClipAnswer& answer) {
       {"left_out_contacts", s.left_out_contacts},
       {"strategies", std::move(strategies)},
       {"first", std::move(first)},
+      {"first_named", std::move(named)},
       {"worst", std::move(worst)},
       {"met", std::move(met)},
       {"events", std::move(events)},

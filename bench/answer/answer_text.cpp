@@ -150,6 +150,33 @@ std::string frames_text(const ClipAnswer& answer) {
          frame_text(answer.input, {s.last_index, 1});
 }
 
+constexpr char kFold[] = "less deep than a tenth of the limb's girth";
+static_assert(Joints::kShare == 0.1);
+
+// Behind a verdict: whether all that meets does so at joints.
+std::string joints_alone_text(const ClipAnswer& answer) {
+  const bool alone = answer.only_folds(answer.first_named()->names);
+  return alone ? std::string(", only at joints and ") + kFold : "";
+}
+
+// What meets at joints, as ignored_text() says what is ignored. Empty where nothing does.
+std::string joints_text(const ClipAnswer& answer) {
+  std::map<NamePair, std::size_t> intervals;
+  std::size_t contacts = 0, pairs = 0;
+  for (const auto& [both, here] : answer.summary.met) {
+    if (!answer.only_folds(both)) continue;
+    intervals[both] = here.intervals;
+    contacts += here.contacts;
+    pairs += here.start_pairs;
+  }
+  if (intervals.empty()) return {};
+  return std::string("at joints, ") + kFold + ": " + listed(intervals, met_text) + "; " +
+         many(contacts, answer.summary.is_thick ? "close pair" : "contact") +
+         (pairs > 0 ? " and " + many(pairs, "crossing pair") + " of triangles" : std::string()) +
+         (answer.input.clip->header().bone_parent.empty() ? ""
+                                                          : " (--ignore-neighbours 1 ignores such pairs)");
+}
+
 // The predicate of a verdict about straight lines: one class a line.
 std::string verdict_predicate(const ClipAnswer& answer) {
   const Input& input = answer.input;
@@ -166,7 +193,9 @@ std::string verdict_predicate(const ClipAnswer& answer) {
                                  : "comes within " + input.thickness.asked.thickness.text + " of itself";
     const std::string pairs =
         cross > 0 ? many(s.worst->start_pairs, "pair") + " of triangles, " : std::string();
-    return what + " in its one pose" + apart + ": " + pairs + meeting_text(s.first->names, s.first->how);
+    const AnswerSummary::Meeting& named = *answer.first_named();
+    return what + " in its one pose" + joints_alone_text(answer) + apart + ": " + pairs +
+           meeting_text(named.names, named.how);
   }
   if (!collides(s.verdict())) {
     const std::string frames = input.is_one_pose ? " in its one pose" : frames_text(answer);
@@ -190,12 +219,12 @@ std::string verdict_predicate(const ClipAnswer& answer) {
   if (close > 0)
     text += (text.empty() ? "comes within " : " and comes within ") + input.thickness.asked.thickness.text +
             " of itself in " + (text.empty() ? of_intervals(close, s) : std::to_string(close) + " more");
-  const AnswerSummary::Meeting& first = *s.first;
-  text +=
-      apart + ", first at " + moment_text(input, first.moment) + ": " + meeting_text(first.names, first.how);
+  const AnswerSummary::Meeting& first = *answer.first_named();
+  text += joints_alone_text(answer) + apart + (&first == &*s.first ? ", first" : ", first away from joints") +
+          " at " + moment_text(input, first.moment) + ": " + meeting_text(first.names, first.how);
   // Of what meets in the first frame, the next time that it meets is news.
   const bool at_start = first.moment.interval == s.first_index && first.moment.time == 0;
-  if (const auto& again = s.first_after_parting; at_start && again)
+  if (const auto& again = s.first_after_parting; at_start && again && !answer.only_folds(again->names))
     text += "; once it had parted, again at " + moment_text(input, again->moment) + ": " +
             meeting_text(again->names, again->how);
   return text;
@@ -208,7 +237,7 @@ std::string only_touching_text(const ClipAnswer& answer) {
   if (answer.input.thickness.length > 0) return {};
   std::map<NamePair, std::size_t> touching;
   for (const auto& [both, here] : answer.summary.met)
-    if (!here.crosses) touching[both] = here.intervals;
+    if (here.start_pairs == 0 && !answer.only_folds(both)) touching[both] = here.intervals;
   const auto sorted = most_first(touching);
   std::string out;
   for (std::size_t i = 0; i < std::min(kMost, sorted.size()); ++i)
@@ -219,8 +248,8 @@ std::string only_touching_text(const ClipAnswer& answer) {
 
 // What is said below the verdict, without full stops; empty where there is nothing to say.
 struct Sentences {
-  std::string lines, counts, thickness, worst, met, ignored, rest, touching, coinciding, last, identical,
-      proven, rate, choice;
+  std::string lines, counts, thickness, worst, met, joints, ignored, rest, touching, coinciding, last,
+      identical, proven, rate, choice;
 };
 
 Sentences sentences(const ClipAnswer& answer) {
@@ -252,8 +281,10 @@ Sentences sentences(const ClipAnswer& answer) {
   }
   if (!s.met.empty()) {
     std::map<NamePair, std::size_t> intervals;
-    for (const auto& [both, here] : s.met) intervals[both] = here.intervals;
-    out.met = "met: " + listed(intervals, met_text);
+    for (const auto& [both, here] : s.met)
+      if (!answer.only_folds(both)) intervals[both] = here.intervals;
+    if (!intervals.empty()) out.met = "met: " + listed(intervals, met_text);
+    out.joints = joints_text(answer);
   }
   if (input.ignored) out.ignored = ignored_text(input, s);
   // A simulation that starts crossed has no pose at rest, and what it begins with may be what is looked
@@ -388,21 +419,42 @@ std::string not_measured_text(const ClipAnswer& answer) {
          std::to_string(OverlapEvents::kMostPairs) + " pairs cross, too many to say what lies in what\n";
 }
 
-// "lies in itself in 2 places and touches itself in 1 place".
-std::string places_text(const std::vector<OverlapEvent>& events) {
-  const auto crossing = static_cast<std::size_t>(std::ranges::count_if(events, &OverlapEvent::crosses));
-  const std::size_t touching = events.size() - crossing;
-  return (crossing > 0 ? "lies in itself in " + many(crossing, "place") : "") +
-         (crossing > 0 && touching > 0 ? " and " : "") +
-         (touching > 0 ? "touches itself at starts in " + many(touching, "place") : "");
+// Events, deepest first: those that are no folds at joints, and those that are.
+struct ToldApart {
+  std::vector<std::size_t> others, folds;
+};
+
+ToldApart told_apart(const ClipAnswer& answer) {
+  ToldApart out;
+  for (const std::size_t i : deepest_first(answer.events))
+    (answer.joints.fold(answer.events[i]) ? out.folds : out.others).push_back(i);
+  return out;
+}
+
+// "lies in itself in 2 places and touches itself at starts in 1 place, and at joints in 3 more".
+std::string places_text(const ClipAnswer& answer) {
+  const ToldApart events = told_apart(answer);
+  const auto crossing = static_cast<std::size_t>(
+      std::ranges::count_if(events.others, [&](std::size_t i) { return answer.events[i].crosses; }));
+  const std::size_t touching = events.others.size() - crossing;
+  const std::string places = (crossing > 0 ? "lies in itself in " + many(crossing, "place") : "") +
+                             (crossing > 0 && touching > 0 ? " and " : "") +
+                             (touching > 0 ? "touches itself at starts in " + many(touching, "place") : "");
+  if (events.folds.empty()) return places;
+  return places.empty() ? "folds onto itself at joints in " + many(events.folds.size(), "place")
+                        : places + ", and at joints in " + std::to_string(events.folds.size()) + " more";
 }
 
 std::string events_text(const ClipAnswer& answer) {
   const std::vector<OverlapEvent>& events = answer.events;
   std::string out = not_measured_text(answer);
   if (events.empty()) return out;
-  out += "  " + places_text(events) + (events.size() > kMostEvents ? ", deepest in" : "") + ":\n";
-  const std::vector<std::size_t> order = deepest_first(events);
+  const std::vector<std::size_t> order = told_apart(answer).others;
+  out += "  " + places_text(answer) +
+         (order.size() > kMostEvents ? "; deepest in:"
+          : order.empty()            ? ""
+                                     : ":") +
+         "\n";
   for (std::size_t i = 0; i < std::min(kMostEvents, order.size()); ++i)
     out += "    " + event_text(answer.input, events[order[i]]) + "\n";
   std::size_t within = 0;
@@ -423,8 +475,8 @@ std::string clip_text(const ClipAnswer& answer) {
   const Sentences said = sentences(answer);
   std::string out = verdict_lines(answer) + true_motion_text(answer.input, answer.true_motion);
   for (const std::string* line :
-       {&said.lines, &said.counts, &said.thickness, &said.worst, &said.met, &said.ignored, &said.rest,
-        &said.touching, &said.coinciding, &said.last, &said.identical, &said.proven})
+       {&said.lines, &said.counts, &said.thickness, &said.worst, &said.met, &said.joints, &said.ignored,
+        &said.rest, &said.touching, &said.coinciding, &said.last, &said.identical, &said.proven})
     if (!line->empty()) out += "  " + *line + "\n";
   out += events_text(answer);
   return out + "  took " + short_text(s.wall_ms) + " ms: " + short_text(s.query_ms) + " to find contacts, " +
@@ -442,12 +494,10 @@ std::string brief_clip_text(const ClipAnswer& answer) {
        {&said.ignored, &said.rest, &said.touching, &said.coinciding, &said.last, &said.identical})
     if (!line->empty()) out += "  " + *line + "\n";
   if (!answer.events.empty()) {
-    const std::size_t deepest = deepest_first(answer.events)[0];
-    out +=
-        "  " + places_text(answer.events) +
-        (worst_event(answer) == deepest ? std::string()
-                                        : ", deepest: " + event_text(answer.input, answer.events[deepest])) +
-        "\n";
+    const std::vector<std::size_t> others = told_apart(answer).others;
+    const bool is_news = !others.empty() && worst_event(answer) != others.front();
+    out += "  " + places_text(answer) +
+           (is_news ? "; deepest: " + event_text(answer.input, answer.events[others.front()]) : "") + "\n";
   }
   if (answer.input.motion) out += true_motion_text(answer.input, answer.true_motion);
   return out;
@@ -456,9 +506,9 @@ std::string brief_clip_text(const ClipAnswer& answer) {
 std::string details_text(const ClipAnswer& answer) {
   const Sentences said = sentences(answer);
   std::string out;
-  for (const std::string* sentence :
-       {&said.lines, &said.counts, &said.thickness, &said.worst, &said.ignored, &said.rest, &said.touching,
-        &said.coinciding, &said.last, &said.identical, &said.proven, &said.rate, &said.choice}) {
+  for (const std::string* sentence : {&said.lines, &said.counts, &said.thickness, &said.worst, &said.joints,
+                                      &said.ignored, &said.rest, &said.touching, &said.coinciding, &said.last,
+                                      &said.identical, &said.proven, &said.rate, &said.choice}) {
     if (sentence->empty()) continue;
     std::string capital = *sentence;
     capital[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(capital[0])));

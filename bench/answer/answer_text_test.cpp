@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/answer/answer_json.h"
 #include "bench/answer/clip_answerer.h"
 #include "bench/inputs/test_inputs.h"
 
@@ -12,6 +13,7 @@ struct Said {
   std::vector<std::string> sentences;
   std::string sentence, text;
   DepthCheck depth;  // at most 0.1 deep
+  nlohmann::json summary;
 };
 
 Said said(Input input, const AnswerRequest& request = {}) {
@@ -19,7 +21,7 @@ Said said(Input input, const AnswerRequest& request = {}) {
   asked.answer_all("test", false, [](const AnsweredPose&) {});
   const ClipAnswer& answer = asked.answers().front();
   return {verdict_sentences(answer), verdict_text(answer), clip_text(answer),
-          check_depth(answer, {.text = "0.1", .number = 0.1})};
+          check_depth(answer, {.text = "0.1", .number = 0.1}), summary_json(answer)};
 }
 
 bool has(const std::string& text, const std::string& part) {
@@ -110,6 +112,68 @@ TEST(AnswerText, SaysHowNearThingsCome) {
   EXPECT_EQ(said(two_balls({0, -1.2}), thick).sentence,
             "test: component 1 is 0.1156 deep in component 0, at frame 1 alone. It touches itself in 1 of 1 "
             "interval, first at frame 0.46: component 0 comes close to component 1.");
+}
+
+// Three balls, each with a bone, the first of which a joint joins to the second and that one to the third.
+// In each frame the second ball is shifted along x, and the third one along z.
+Input jointed_balls(std::initializer_list<std::pair<double, double>> shifts) {
+  const test::Shape ball = test::icosphere(2);
+  const Vec3 second(3, 0.1, 0.2), third(0.1, 0.2, 3);
+  const test::Shape all =
+      test::together(test::together(ball, test::moved(ball, second)), test::moved(ball, third));
+  const std::size_t n = ball.positions.size();
+  Rig rig{{BoneId{-1}, BoneId{0}, BoneId{1}}, {}};
+  for (const Vec3& at : {Vec3(0, 0, 0), second, third}) rig.reference.push_back({at, at + Vec3(0, 0.1, 0)});
+  auto clip = std::make_unique<scenes::Clip>(
+      scenes::ClipHeader{all.triangles, all.positions.size(), rig.parent, false, all.positions});
+  for (const auto& [x, z] : shifts) {
+    std::vector<Vec3> frame = all.positions;
+    for (std::size_t v = 0; v < n; ++v) frame[n + v].x() += x, frame[2 * n + v].z() += z;
+    clip->append({frame, rig.reference});
+  }
+  Input out{"test", std::move(clip), all.mesh(), all.positions, rig};
+  out.bone_names = {"thigh", "calf", "hand"};
+  return out;
+}
+
+// Mutations: a fold at a joint is the headline, or the first contact that is named; however deep, what meets
+// at a joint is a fold; folds are left out of counts.
+TEST(AnswerText, SaysFoldsAtJointsInOneQuietLine) {
+  AnswerRequest base;
+  base.strategies = {"base"};
+  const Said both = said(jointed_balls({{0, 0}, {-1.3, 0}, {-1.3, -1.15}, {0, 0}}), base);
+  EXPECT_EQ(
+      both.sentence,
+      "test: thigh is 0.1105 deep in hand, at frame 2 alone. It crosses itself at the start of 2 of 3 "
+      "intervals and touches itself in 1 more, first away from joints at frame 1.9: thigh touches hand.");
+  EXPECT_TRUE(has(both.text,
+                  "\n  met: hand and thigh (2 intervals)\n"
+                  "  at joints, less deep than a tenth of the limb's girth: calf and thigh (3 "
+                  "intervals); 184 contacts and 92 crossing pairs of triangles "
+                  "(--ignore-neighbours 1 ignores such pairs)\n"))
+      << both.text;
+  EXPECT_TRUE(has(both.text, "\n  lies in itself in 1 place, and at joints in 1 more:\n    thigh in hand: "))
+      << both.text;
+  const nlohmann::json& events = both.summary["events"];
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[0]["at_joint"], true);
+  EXPECT_EQ(events[1]["at_joint"], false);
+  EXPECT_GT(events[0]["depth"]["at_least"], events[1]["depth"]["at_least"]);
+  EXPECT_EQ(both.summary["headline"]["event"], 1);
+  EXPECT_LT(both.summary["first"]["frame"], 1);
+  EXPECT_EQ(both.summary["first_named"]["interval"], 1);
+  EXPECT_EQ(both.summary["first_named"]["second"], "hand");
+  for (const nlohmann::json& row : both.summary["met"]) EXPECT_EQ(row["at_joint"], row["first"] == "calf");
+  const Said folds = said(jointed_balls({{0, 0}, {-1.3, 0}, {0, 0}}), base);
+  EXPECT_EQ(folds.sentence,
+            "test crosses itself at the start of 1 of 2 intervals and touches itself in 1 more, only at "
+            "joints and less deep than a tenth of the limb's girth, first at frame 0.8: thigh touches calf.");
+  EXPECT_TRUE(has(folds.text, "\n  folds onto itself at joints in 1 place\n")) << folds.text;
+  EXPECT_TRUE(folds.summary["headline"].is_null());
+  EXPECT_TRUE(folds.depth.fails) << "a fold is as deep as anything";
+  const Said deep = said(jointed_balls({{0, 0}, {-1.9, 0}, {0, 0}}), base);
+  EXPECT_EQ(deep.sentence.find("test: calf is 0.798 deep in thigh, at frame 1 alone. It crosses "), 0u)
+      << deep.sentence;
 }
 
 // Mutation: the pose is called an interval.

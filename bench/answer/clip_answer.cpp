@@ -73,25 +73,28 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
   if (!worst || std::tie(answer.start.total, contacts) > std::tie(worst->start_pairs, worst->contacts))
     worst = Worst{moment, answer.start.total, contacts};
 
-  std::map<NamePair, bool> here;  // whether they cross
-  const auto meet = [&](TriangleId a, TriangleId b, bool crosses) {
+  std::set<NamePair> here;
+  const auto meet = [&](TriangleId a, TriangleId b, double time, IntervalVerdict manner) -> Met& {
     std::string x = names.place_of(a), y = names.place_of(b);
     if (!first) first = Meeting{moment, how, {x, y}};
     if (parted_ && !first_after_parting) first_after_parting = Meeting{moment, how, {x, y}};
-    bool& one = here[in_order(std::move(x), std::move(y))];
-    one = one || crosses;
+    const Meeting meeting{{answer.index, time}, manner, {x, y}};
+    NamePair both = in_order(std::move(x), std::move(y));
+    Met& entry = met.try_emplace(both, Met{.first = meeting}).first->second;
+    if (entry.first.moment.interval == answer.index && time < entry.first.moment.time) entry.first = meeting;
+    entry.intervals += here.insert(std::move(both)).second;
+    return entry;
   };
-  for (const CrossingPair& pair : answer.start.pairs) meet(pair.first, pair.second, true);
-  for (const CrossingPair& pair : answer.start_touching.pairs) meet(pair.first, pair.second, false);
+  for (const CrossingPair& pair : answer.start.pairs)
+    ++meet(pair.first, pair.second, 0, IntervalVerdict::intersects_at_start).start_pairs;
+  for (const CrossingPair& pair : answer.start_touching.pairs)
+    meet(pair.first, pair.second, 0, IntervalVerdict::touches);
   for (const Contact& contact : answer.found.contacts)
     if (contact.verdict == Verdict::contact)
-      meet(names.triangle_of(contact.pair, false), names.triangle_of(contact.pair, true), false);
+      ++meet(names.triangle_of(contact.pair, false), names.triangle_of(contact.pair, true), contact.time,
+             is_thick ? IntervalVerdict::close : IntervalVerdict::touches)
+            .contacts;
   if (!first) first = Meeting{moment, how, {"the surface", "the surface"}};
-  for (const auto& [both, crosses] : here) {
-    Met& entry = met[both];
-    ++entry.intervals;
-    entry.crosses = entry.crosses || crosses;
-  }
 }
 
 void AnswerSummary::add_ignored(const IntervalAnswer& answer, const SurfaceNames& names) {
@@ -107,6 +110,25 @@ void AnswerSummary::add_ignored(const IntervalAnswer& answer, const SurfaceNames
     if (contact.verdict == Verdict::contact)
       ++meet(names.triangle_of(contact.pair, false), names.triangle_of(contact.pair, true)).contacts;
   with_ignored += !here.empty();
+}
+
+bool ClipAnswer::only_folds(const NamePair& both) const {
+  if (!joints.join(both)) return false;
+  const NamePair swapped{both.second, both.first};
+  return std::ranges::none_of(events, [&](const OverlapEvent& event) {
+    return (event.names == both || event.names == swapped) && !joints.fold(event);
+  });
+}
+
+const AnswerSummary::Meeting* ClipAnswer::first_named() const {
+  if (!summary.first || !only_folds(summary.first->names)) return summary.first ? &*summary.first : nullptr;
+  const AnswerSummary::Meeting* found = nullptr;
+  const auto when = [](const AnswerSummary::Meeting* meeting) {
+    return std::pair(meeting->moment.interval, meeting->moment.time);
+  };
+  for (const auto& [both, here] : summary.met)
+    if (!only_folds(both) && (found == nullptr || when(&here.first) < when(found))) found = &here.first;
+  return found != nullptr ? found : &*summary.first;
 }
 
 std::size_t identical_triangles(const TriangleMesh& mesh) {
@@ -130,6 +152,8 @@ ClipAnswer prepared_answer(const Input& input, const SurfaceNames& names, const 
                  answerer.rest_touching()};
   if (const Exclusions* const left_out = input.thickness.left_out.get())
     out.kept_at_rest = close_at_rest(input, left_out).contacts.size();
+  out.summary.is_thick = input.thickness.length > 0;
+  out.joints = Joints(input, names);
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/answer/answer.h"
+#include "bench/answer/joints.h"
 #include "bench/answer/overlap_events.h"
 #include "bench/answer/true_answer.h"
 #include "bench/inputs/input.h"
@@ -54,8 +55,9 @@ struct AnswerSummary {
   std::optional<Worst> worst;
   // Bones, or else parts, that met.
   struct Met {
-    std::size_t intervals = 0;
-    bool crosses = false;  // whether triangles of both cross at any start; else they only touch or come close
+    Meeting first;
+    std::size_t intervals = 0, contacts = 0;
+    std::size_t start_pairs = 0;  // of triangles that cross; where none do, they only touch or come close
   };
   std::map<NamePair, Met> met;
   // What is ignored, by bones or else parts.
@@ -68,6 +70,7 @@ struct AnswerSummary {
   std::size_t old_pairs = 0, old_contacts = 0, with_old = 0;
   // With a thickness: pairs that are close at the starts of intervals, and the number of such intervals.
   std::size_t close_at_start = 0, with_close_at_start = 0;
+  bool is_thick = false;  // a contact is a close pair
   double embedding_ms = 0, query_ms = 0, load_ms = 0, wall_ms = 0, overlap_ms = 0;
 
   std::size_t intervals() const { return verdicts.total(); }
@@ -99,12 +102,18 @@ struct ClipAnswer {
   std::vector<OverlapEvent> events = {};  // in the order in which they begin
   std::size_t not_measured = 0;           // starts of which events say nothing (OverlapEvents)
   TrueSummary true_motion = {};           // of no interval where it was not asked for
+  Joints joints = {};
   // Of the frame in which the last interval ends, as an interval that starts there; none of a file of one
   // pose.
   std::optional<IntervalAnswer> last_pose = {};
 
   // The worst verdict of any interval: in its true motion, where that was asked for.
   IntervalVerdict verdict() const { return input.motion ? true_motion.verdict() : summary.verdict(); }
+  // Whether all that is known to meet between two places folds at a joint.
+  bool only_folds(const NamePair& both) const;
+  // The meeting that a verdict names: the first one, of those between places that do not only fold where
+  // there are such. Nothing where nothing meets.
+  const AnswerSummary::Meeting* first_named() const;
 };
 
 // How many triangles of a surface have the same three corners as another one. Two such triangles share all

@@ -46,11 +46,6 @@ std::string distance_text(const Input& input, double length) {
   return unit > 0 ? short_text(unit * length) + " cm" : short_text(length);
 }
 
-bool is_known(const CrossingDepth& depth) {
-  constexpr double kRounding = 1e-9;  // a share of the bound below which a depth is nothing but rounding
-  return depth.lower > kRounding * depth.upper;
-}
-
 std::string event_text(const Input& input, const OverlapEvent& event) {
   std::string out = event.names.first + (event.crosses ? " in " : " touches ") + other_of(event.names);
   const std::string most = "at most " + distance_text(input, event.depth.upper);
@@ -72,7 +67,9 @@ std::optional<std::size_t> worst_event(const ClipAnswer& answer) {
     return event.depth.lower - event.at_rest.value_or(0);
   };
   for (std::size_t i = 0; i < answer.events.size(); ++i)
-    if (is_known(answer.events[i].depth) && (!worst || excess(i) > excess(*worst))) worst = i;
+    if (is_known(answer.events[i].depth) && !answer.joints.fold(answer.events[i]) &&
+        (!worst || excess(i) > excess(*worst)))
+      worst = i;
   return worst;
 }
 

@@ -259,6 +259,11 @@ void keep_new(const Input& input, const OverlapPieces& pieces, IntervalAnswer& a
   answer.verdict = verdict_of(answer, input.thickness.length > 0);
 }
 
+bool is_known(const CrossingDepth& depth) {
+  constexpr double kRounding = 1e-9;  // a share of the bound below which a depth is nothing but rounding
+  return depth.lower > kRounding * depth.upper;
+}
+
 std::vector<std::size_t> deepest_first(std::span<const OverlapEvent> events) {
   std::vector<std::size_t> order(events.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -38,6 +38,9 @@ struct OverlapEvent {
   std::size_t contacts = 0;      // of these intervals, between its pieces
 };
 
+// Whether more is known of a depth than what it does not exceed.
+bool is_known(const CrossingDepth& depth);
+
 // The numbers of events in the order of their depths, deepest first.
 std::vector<std::size_t> deepest_first(std::span<const OverlapEvent> events);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <fnmatch.h>
 #include <map>
-#include <set>
 
 #include "bench/inputs/surface_names.h"
 #include "core/base/error.h"
@@ -66,8 +65,23 @@ Names cut(const std::string& text, const std::set<std::string>& known) {
   refuse(text, unknown.value_or(text.substr(0, colon)), known);
 }
 
-// How many joints apart bones are, up to a limit: apart[a] holds every bone that is near enough to a.
-std::vector<std::set<std::int32_t>> neighbours(std::span<const BoneId> parent, int joints) {
+// Triangles that every request treats alike are one group.
+struct Group {
+  std::set<std::string> called;  // what requests say that fits a name of theirs
+  std::int32_t bone = -1;        // negative where bones do not matter
+  auto operator<=>(const Group&) const = default;
+};
+
+bool meet(const Names& names, const Group& a, const Group& b) {
+  const auto is = [](const Group& group, const std::string& pattern) {
+    return group.called.contains(pattern);
+  };
+  return (is(a, names.first) && is(b, names.second)) || (is(a, names.second) && is(b, names.first));
+}
+
+}  // namespace
+
+std::vector<std::set<std::int32_t>> bones_within(std::span<const BoneId> parent, int joints) {
   std::vector<std::set<std::int32_t>> next(parent.size()), near(parent.size());
   for (std::size_t b = 0; b < parent.size(); ++b) {
     near[b].insert(static_cast<std::int32_t>(b));
@@ -87,22 +101,6 @@ std::vector<std::set<std::int32_t>> neighbours(std::span<const BoneId> parent, i
   }
   return near;
 }
-
-// Triangles that every request treats alike are one group.
-struct Group {
-  std::set<std::string> called;  // what requests say that fits a name of theirs
-  std::int32_t bone = -1;        // negative where bones do not matter
-  auto operator<=>(const Group&) const = default;
-};
-
-bool meet(const Names& names, const Group& a, const Group& b) {
-  const auto is = [](const Group& group, const std::string& pattern) {
-    return group.called.contains(pattern);
-  };
-  return (is(a, names.first) && is(b, names.second)) || (is(a, names.second) && is(b, names.first));
-}
-
-}  // namespace
 
 void ignore(Input& input, const IgnoreRequest& request) {
   if (request.pairs.empty() && !request.neighbours) return;
@@ -136,7 +134,7 @@ void ignore(Input& input, const IgnoreRequest& request) {
     const auto number = static_cast<std::int32_t>(groups.size());
     group_of_triangle.push_back(groups.try_emplace(std::move(group), number).first->second);
   }
-  const std::vector<std::set<std::int32_t>> near = neighbours(parent, request.neighbours.value_or(0));
+  const std::vector<std::set<std::int32_t>> near = bones_within(parent, request.neighbours.value_or(0));
   std::vector<GroupPair> pairs;
   for (const auto& first : groups)
     for (const auto& second : groups) {

@@ -1,8 +1,16 @@
 #pragma once
 
+#include <cstdint>
+#include <set>
+#include <span>
+#include <vector>
+
 #include "bench/inputs/input.h"
 
 namespace cscd::bench {
+
+// Returns for each bone, [bones], those that are at most so many joints from it, itself among them.
+std::vector<std::set<std::int32_t>> bones_within(std::span<const BoneId> parent, int joints);
 
 // Has the answers about an input ignore what is asked (Input::ignored). A triangle belongs to the bone that
 // moves most of its corners, to its part and to its mesh. Two triangles ignore each other if a request names

@@ -111,7 +111,7 @@ json record_clip(const ViewRequest& options, Input opened, Sections& sections) {
                  {"thickness", input.thickness.asked.thickness.text},
                  {"clip", clip.write(sections)},
                  {"texts", texts.texts()},
-                 {"events", event_lines(input, first.events)},
+                 {"events", event_lines(first)},
                  {"true_motion", input.motion ? std::move(true_moments) : json()},
                  {"rest", rest_json(first)},
                  {"strategies", std::move(rows)}};

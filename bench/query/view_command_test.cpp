@@ -213,10 +213,12 @@ TEST_F(View, ABrowserShowsAClipThatTouchesNothing) {
 }
 
 TEST_F(View, ABrowserShowsWhatComesClose) {
-  ASSERT_EQ(run("cscd view figure.glb --clip hug --thickness 0.3e -o page.html").status, 0);
+  ASSERT_EQ(run("cscd view figure.glb --clip hug --frames 0:25 --thickness 0.3e -o page.html").status, 0);
   const json header = header_of(text("page.html"));
   EXPECT_EQ(header["thickness"], "0.3e");
   EXPECT_GT(header["strategies"][0]["summary"]["close"], 0);
+  EXPECT_TRUE(
+      header["strategies"][0]["summary"]["headline"].is_null());  // so it opens at the first close pair
   use_in_browser("page.html", "comes within 0.3e of itself");
 }
 

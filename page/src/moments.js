@@ -32,10 +32,21 @@ export const truthsOf = ({ truths, endOfInterval }) =>
 // The moment of an event, at the start where it is deepest.
 export const momentOfEvent = (event) => ({ interval: event.deepest, event });
 
+// The first contact or crossing that the verdict names, as a list of one; empty where the page does not hold it.
+function namedOf(recording, strategy) {
+  const { first_named: named } = strategy.summary, interval = named ? named.interval - recording.clip.first_interval : -1;
+  const found = [];
+  if (interval < 0) return found;
+  for (let pair = strategy.crossingOffset[interval]; pair < strategy.crossingOffset[interval + 1]; ++pair) found.push({ interval, pair });
+  for (let contact = strategy.contactOffset[interval]; contact < strategy.contactOffset[interval + 1]; ++contact) found.push({ interval, contact });
+  const both = JSON.stringify([named.first, named.second]);
+  return found.filter((moment) => JSON.stringify(namesOf(recording, strategy, moment)) === both).slice(0, 1);
+}
+
 // The moment at which a page opens: that of which the verdict speaks first. Undefined where nothing happens.
 export function openingOf(recording, strategy) {
   const number = strategy.summary.headline?.event, worst = recording.events.find((event) => event.number === number);
-  return worst ? momentOfEvent(worst) : [...truthsOf(recording), ...momentsOf(strategy)][0];
+  return worst ? momentOfEvent(worst) : [...truthsOf(recording), ...namedOf(recording, strategy), ...momentsOf(strategy)][0];
 }
 
 // When a moment is, in its interval.

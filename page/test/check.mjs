@@ -54,6 +54,11 @@ try {
     const { active, recording, position, mode } = window.cscd, { headline } = active.summary;
     return headline && { at: position, deepest: headline.deepest.interval + headline.deepest.time - recording.clip.first_interval, mode, text: headline.text };
   });
+  const named = await page.evaluate(() => {
+    const { active, recording, position } = window.cscd, { headline, first_named: first } = active.summary;
+    return headline || recording.truths || !first ? null : { interval: first.interval - recording.clip.first_interval, at: Math.floor(position) };
+  });
+  if (named) require(named.at === named.interval, `the page opens in interval ${named.at} and not at the first contact that the verdict names, in ${named.interval}`);
   if (opening) {
     require(opening.at === opening.deepest, `the page opens at ${opening.at} and not where it is deepest, at ${opening.deepest}`);
     require(opening.mode === "depth", "the page does not open in colours of depth");

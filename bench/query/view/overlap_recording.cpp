@@ -60,10 +60,12 @@ void OverlapRecording::write(Sections& sections) const {
   sections.add("curve_share", share_);
 }
 
-nlohmann::json event_lines(const Input& input, std::span<const OverlapEvent> events) {
+nlohmann::json event_lines(const ClipAnswer& answer) {
   nlohmann::json out = nlohmann::json::array();
-  for (const std::size_t i : deepest_first(events))
-    out.push_back({{"event", i}, {"text", event_text(input, events[i])}});
+  std::vector<std::size_t> order = deepest_first(answer.events);
+  std::ranges::stable_partition(order, [&](std::size_t i) { return !answer.joints.fold(answer.events[i]); });
+  for (const std::size_t i : order)
+    out.push_back({{"event", i}, {"text", event_text(answer.input, answer.events[i])}});
   return out;
 }
 

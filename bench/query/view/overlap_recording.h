@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "bench/answer/overlap_events.h"
+#include "bench/answer/clip_answer.h"
 #include "bench/query/view/sections.h"
 
 namespace cscd::bench {
@@ -36,7 +36,8 @@ class OverlapRecording {
   std::vector<std::uint16_t> share_;         // [points], of the way along that edge, of 65535
 };
 
-// Returns what the page says of each event, deepest first: its number in summary.events, and a line of text.
-nlohmann::json event_lines(const Input& input, std::span<const OverlapEvent> events);
+// Returns what the page says of each event, deepest first and those at joints last: its number in
+// summary.events, and a line of text.
+nlohmann::json event_lines(const ClipAnswer& answer);
 
 }  // namespace cscd::bench
