@@ -5,6 +5,7 @@
 #include "bench/answer/answer_text.h"
 #include "bench/answer/event_text.h"
 #include "bench/answer/verdicts.h"
+#include "bench/inputs/thickness.h"
 #include "bench/output/json_text.h"
 #include "core/detect/contact_geometry.h"
 
@@ -75,7 +76,7 @@ json side_json(const Input& input, const SurfaceNames& names, const FeaturePair&
 json thickness_json(const ClipAnswer& answer) {
   const InputThickness& own = answer.input.thickness;
   const auto length = [&](const WrittenLength& written) {
-    return json{{"asked", written.text}, {"length", written.length(own.edge)}};
+    return json{{"asked", written.text}, {"length", written.length(length_scale(answer.input))}};
   };
   json out = length(own.asked.thickness), near;
   if (own.asked.near_rest.number > 0) near = length(own.asked.near_rest);

@@ -69,9 +69,10 @@ std::string of_intervals(std::size_t count, const AnswerSummary& s) {
   return std::to_string(count) + " of " + many(s.intervals(), "interval");
 }
 
-// "0.2e (0.0134)", or "0.01".
-std::string length_text(const WrittenLength& written, double edge) {
-  return written.text + (written.in_edges ? " (" + short_text(written.length(edge)) + ")" : "");
+// "0.2e (1.34 cm)", or "0.01".
+std::string length_text(const Input& input, const WrittenLength& written) {
+  return written.text +
+         (written.in_edges ? " (" + distance_text(input, written.length(length_scale(input))) + ")" : "");
 }
 
 // "thickness 0.2e (0.0134); pairs of features that are near by construction are left out (--exclude-rings 2),
@@ -79,7 +80,7 @@ std::string length_text(const WrittenLength& written, double edge) {
 std::string thickness_text(const ClipAnswer& answer) {
   const InputThickness& own = answer.input.thickness;
   const bool is_thick = own.length > 0;
-  std::string out = is_thick ? "thickness " + length_text(own.asked.thickness, own.edge) : "";
+  std::string out = is_thick ? "thickness " + length_text(answer.input, own.asked.thickness) : "";
   if (const AnswerSummary& s = answer.summary; s.close_at_start > 0)
     out += "; " + many(s.close_at_start, "pair") + " of features " + (s.close_at_start == 1 ? "is" : "are") +
            " this close at the start of " + many(s.with_close_at_start, "interval");
@@ -89,7 +90,7 @@ std::string thickness_text(const ClipAnswer& answer) {
   if (rings > 0) out += "--exclude-rings " + std::to_string(rings);
   if (own.asked.near_rest.number > 0)
     out += (rings > 0 ? ", --exclude-near-rest " : "--exclude-near-rest ") +
-           length_text(own.asked.near_rest, own.edge);
+           length_text(answer.input, own.asked.near_rest);
   const bool is_one = answer.kept_at_rest == 1;
   return out + "), and " + std::to_string(answer.kept_at_rest) + (is_one ? " other " : " others ") +
          (!is_thick ? (is_one ? "touches" : "touch")
@@ -359,8 +360,8 @@ std::string identical_text(std::size_t triangles) {
 }
 
 DepthCheck check_depth(const ClipAnswer& answer, const WrittenLength& most) {
-  const double length = most.length(answer.input.thickness.edge);
-  const std::string limit = "--fail-deeper-than " + length_text(most, answer.input.thickness.edge) + ": ";
+  const double length = most.length(length_scale(answer.input));
+  const std::string limit = "--fail-deeper-than " + length_text(answer.input, most) + ": ";
   // A start of which nothing is known may be too deep.
   if (answer.not_measured > 0) return {true, limit + "fails, because some starts were not measured"};
   // Triangles with the same three corners leave bounds of depths in doubt.

@@ -4,6 +4,7 @@
 
 #include "bench/answer/verdicts.h"
 #include "bench/inputs/input_options.h"
+#include "bench/inputs/thickness.h"
 #include "core/base/number_text.h"
 
 namespace cscd::bench {
@@ -42,8 +43,10 @@ std::string moment_text(const Input& input, const ClipMoment& moment) {
 }
 
 std::string distance_text(const Input& input, double length) {
-  const double unit = input.import ? input.import->centimetres_per_unit : 0;
-  return unit > 0 ? short_text(unit * length) + " cm" : short_text(length);
+  const double centimetres = length_scale(input).centimetres_per_unit * length;
+  if (!(length_scale(input).centimetres_per_unit > 0)) return short_text(length);
+  if (centimetres >= 100) return figure_text(centimetres / 100) + " m";
+  return centimetres >= 1 ? figure_text(centimetres) + " cm" : figure_text(10 * centimetres) + " mm";
 }
 
 std::string event_text(const Input& input, const OverlapEvent& event) {

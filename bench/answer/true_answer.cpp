@@ -5,6 +5,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bench/answer/event_text.h"
+#include "bench/inputs/thickness.h"
 #include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
 #include "core/base/number_text.h"
@@ -28,7 +30,8 @@ TrueMotionOptions options_of(const Input& input, const RestCrossings& left_out, 
   if (input.thickness.length > 0)
     throw InputError("--true-motion: takes no --thickness; leave one of the two out");
   TrueMotionOptions out = true_motion_options(input.thickness.edge);
-  if (resolution.is_given()) out.resolution = resolution.length(input.thickness.edge);
+  require_unit(input, resolution, "--resolution");
+  if (resolution.is_given()) out.resolution = resolution.length(length_scale(input));
   out.ignored = input.ignored ? &input.ignored->triangles : nullptr;
   out.left_out = options.keep_rest_crossings ? nullptr : &left_out;
   return out;
@@ -199,7 +202,7 @@ std::string true_motion_text(const Input& input, const TrueSummary& s) {
   } else if (s.bounded() == 0) {
     out += "\n  of no interval as a whole is it known how far the surface leaves straight lines";
   } else {
-    out += "\n  the surface leaves straight lines by at most " + short_text(s.deviation) +
+    out += "\n  the surface leaves straight lines by at most " + distance_text(input, s.deviation) +
            (s.jumps > 0 ? " between jumps" : "");
     if (input.thickness.edge > 0)
       out += " (" + short_text(s.deviation / input.thickness.edge) + " mean edges)";

@@ -45,8 +45,8 @@ std::span<const OptionRow<ThicknessRequest>> thickness_options() {
   static const OptionRow<T> rows[] = {
       {.name = "--thickness",
        .member = &T::thickness,
-       .help =
-           "what comes this near counts: a length such as 0.01, or 0.2e for mean edges of the pose at rest",
+       .help = "what comes this near counts: a length such as 0.01, 5mm where the input tells its unit,\nor "
+               "0.2e for mean edges of the pose at rest",
        .type = "R"},
       {"--exclude-rings",
        &T::rings,

@@ -13,11 +13,12 @@
 namespace cscd::bench {
 namespace {
 
-double length_in(const Input& input, const WrittenLength& written, const char* option, double edge) {
-  const double length = written.length(edge);
+double length_in(const Input& input, const WrittenLength& written, const char* option) {
+  require_unit(input, written, option);
+  const double length = written.length(length_scale(input));
   if (!std::isfinite(length))
     throw InputError(std::string(option) + " " + written.text +
-                     ": is more than a number holds, as edges of " + input.name + " are long; give fewer");
+                     ": is more than a number holds in the units of " + input.name + "; give less");
   return length;
 }
 
@@ -42,7 +43,7 @@ void set_thickness(Input& input, const ThicknessRequest& request, bool with_igno
   InputThickness& out = input.thickness;
   out.asked = request;
   out.edge = mean_edge(input.mesh, input.rest());
-  out.length = length_in(input, request.thickness, "--thickness", out.edge);
+  out.length = length_in(input, request.thickness, "--thickness");
   // Far above the size of the surface, squares overflow, and every answer is known.
   if (out.length > diagonal(input.rest()))
     throw InputError("--thickness " + request.thickness.text + ": is more than all of " + input.name +
@@ -52,8 +53,19 @@ void set_thickness(Input& input, const ThicknessRequest& request, bool with_igno
   Exclusions left_out;
   if (with_ignored && input.ignored) left_out = input.ignored->triangles;
   left_out.exclude_rings(input.mesh, request.rings.value_or(0));
-  left_out.exclude_near(input.rest(), length_in(input, request.near_rest, "--exclude-near-rest", out.edge));
+  left_out.exclude_near(input.rest(), length_in(input, request.near_rest, "--exclude-near-rest"));
   out.left_out = std::make_shared<const Exclusions>(std::move(left_out));
+}
+
+LengthScale length_scale(const Input& input) {
+  return {input.thickness.edge, input.import ? input.import->centimetres_per_unit : 0};
+}
+
+void require_unit(const Input& input, const WrittenLength& written, const char* option) {
+  if (!(written.centimetres > 0) || length_scale(input).centimetres_per_unit > 0) return;
+  throw InputError(std::string(option) + " " + written.text + ": " + input.name +
+                   " does not tell how long its unit is; write 0.01 for a length in that unit, or 0.2e for "
+                   "mean edges of its pose at rest");
 }
 
 std::string why_not_within(const ThicknessRequest& request, const Strategy& strategy) {

@@ -11,6 +11,12 @@ namespace cscd::bench {
 // `with_ignored`. Throws InputError where a length overflows.
 void set_thickness(Input& input, const ThicknessRequest& request, bool with_ignored = false);
 
+// What the lengths of an input are measured in, once set_thickness() has measured its edges.
+LengthScale length_scale(const Input& input);
+// Throws InputError, naming the option, where a length was written with a unit and the input does not tell
+// its own.
+void require_unit(const Input& input, const WrittenLength& written, const char* option);
+
 // Throws InputError, naming those that can, where a strategy or an elementary test cannot answer the request:
 // because it knows no distance, or cannot leave pairs out.
 void require_fit(const ThicknessRequest& request, const Strategy& strategy);

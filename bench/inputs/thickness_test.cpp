@@ -17,12 +17,40 @@ bool has(const std::string& text, const std::string& part) {
 TEST(Length, IsANumberOfUnitsOrOfEdges) {
   const WrittenLength units = parse_length("--thickness", "0.25"),
                       edges = parse_length("--thickness", "0.5e");
-  EXPECT_EQ(units.length(8), 0.25);
-  EXPECT_EQ(edges.length(8), 4);
+  EXPECT_EQ(units.length(LengthScale{8, 0}), 0.25);
+  EXPECT_EQ(edges.length(LengthScale{8, 0}), 4);
   EXPECT_EQ(edges.text, "0.5e");
-  EXPECT_EQ(parse_length("--thickness", "1e-3").length(8), 1e-3) << "an exponent is no unit";
-  EXPECT_EQ(parse_length("--thickness", "1e-3e").length(8), 8e-3);
-  EXPECT_EQ(parse_length("--thickness", "0").length(8), 0);
+  EXPECT_EQ(parse_length("--thickness", "1e-3").length(LengthScale{8, 0}), 1e-3) << "an exponent is no unit";
+  EXPECT_EQ(parse_length("--thickness", "1e-3e").length(LengthScale{8, 0}), 8e-3);
+  EXPECT_EQ(parse_length("--thickness", "0").length(LengthScale{8, 0}), 0);
+}
+
+// Mutations: an inch is a centimetre; the unit of the positions does not matter.
+TEST(Length, IsANumberOfMillimetresCentimetresMetresOrInches) {
+  const LengthScale metres{8, 100}, inches{8, 2.54};
+  for (const auto& [text, length] :
+       {std::pair("5mm", 0.005), {"1cm", 0.01}, {"1e1cm", 0.1}, {"0.5m", 0.5}, {"2in", 0.0508}})
+    EXPECT_DOUBLE_EQ(parse_length("--thickness", text).length(metres), length) << text;
+  EXPECT_DOUBLE_EQ(parse_length("--thickness", "2in").length(inches), 2);
+  EXPECT_DOUBLE_EQ(parse_length("--thickness", "2e").length(inches), 16);
+  EXPECT_DOUBLE_EQ(parse_length("--thickness", "2").length(inches), 2);
+}
+
+// Mutation: a centimetre of an input without a unit is taken for one unit.
+TEST(Length, WithAUnitIsRefusedWhereTheInputTellsNone) {
+  const test::Shape shape = test::octahedron();
+  Input input = input_of(shape, {shape.positions, shape.positions});
+  const ThicknessRequest thick{.thickness = parse_length("--thickness", "5cm")};
+  EXPECT_TRUE(has(test::refusal([&] { set_thickness(input, thick); }),
+                  "--thickness 5cm: test does not tell how long its unit is; write 0.01 for a length"));
+  EXPECT_TRUE(has(test::refusal([&] {
+                    set_thickness(input,
+                                  {.rings = 1, .near_rest = parse_length("--exclude-near-rest", "5cm")});
+                  }),
+                  "--exclude-near-rest 5cm: test does not tell"));
+  input.import.emplace().centimetres_per_unit = 2.5;
+  set_thickness(input, thick);
+  EXPECT_DOUBLE_EQ(input.thickness.length, 2);
 }
 
 TEST(Length, IsRefusedInOneLineThatNamesTheOption) {
@@ -33,7 +61,8 @@ TEST(Length, IsRefusedInOneLineThatNamesTheOption) {
   EXPECT_TRUE(has(text("-0.1e"), "is negative"));
   for (const char* infinite : {"inf", "nan", "-nan", "infe"})
     EXPECT_TRUE(has(text(infinite), "is not finite")) << infinite;
-  for (const char* garbage : {"", "e", "thick", "0.1x", "0.1 e", "0.1ee", "0,1", " 0.1", "0x1"})
+  for (const char* garbage :
+       {"", "e", "thick", "0.1x", "0.1 e", "0.1ee", "0,1", "1 cm", "1km", "1M", "cm", " 0.1", "0x1"})
     EXPECT_TRUE(has(text(garbage), "is no length")) << garbage;
   EXPECT_TRUE(has(text("1e999"), "no number that a double holds"));
 }

@@ -16,6 +16,7 @@
 #include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/inputs/input.h"
+#include "bench/inputs/thickness.h"
 #include "bench/output/output.h"
 #include "core/base/error.h"
 #include "core/base/number_text.h"
@@ -53,6 +54,7 @@ struct Said {
 };
 
 Said say_clip(const QueryOptions& options, Input input, JsonStream* document, bool is_brief = false) {
+  require_unit(input, options.fail_deeper_than, "--fail-deeper-than");
   ClipAnswerer asked(options, std::move(input));
   const ClipAnswer& answer = asked.answers().front();
   std::optional<ClipJson> json;
@@ -243,7 +245,7 @@ void add_query(CLI::App& app) {
        .member = &QueryOptions::fail_deeper_than,
        .help = "exit with status 3 when a piece of the surface lies deeper in another in any frame: a length "
                "such "
-               "as 0.01, or 0.2e for mean edges of the pose at rest",
+               "as 0.01, 5mm where the input tells its unit, or 0.2e for mean edges of the pose at rest",
        .type = "LENGTH"}};
   add_options<QueryOptions>(*command, rows, *options);
   command->callback([options] { query(*options); });

@@ -86,6 +86,20 @@ TEST_F(Query, SaysHowDeepItLiesInItself) {
   expect_refused(run("cscd query small --fail-deeper-than much"), "--fail-deeper-than much");
 }
 
+// glTF is in metres. Mutations: a unit is left out, or taken for that of the positions.
+TEST_F(Query, TakesAndSaysLengthsInUnits) {
+  const Ran ran = run("cscd query figure.glb --clip hug --thickness 1cm --fail-deeper-than 500mm");
+  EXPECT_EQ(ran.status, 3) << ran.errors;
+  EXPECT_TRUE(has(ran.out, ": left_arm_2 is 2.88 m deep in right_arm_2, ")) << ran.out;
+  EXPECT_TRUE(has(ran.out, "  --fail-deeper-than 500mm: fails, because something lies deeper: 2.88 m\n"))
+      << ran.out;
+  EXPECT_EQ(run("cscd query figure.glb --clip hug --fail-deeper-than 5m").status, 0);
+  EXPECT_EQ(answer("figure.glb --clip hug --thickness 1cm")["thickness"]["length"], 0.01);
+  expect_refused(run("cscd query small --thickness 1cm"), "--thickness 1cm: small does not tell");
+  expect_refused(run("cscd query small --fail-deeper-than 1cm"),
+                 "--fail-deeper-than 1cm: small does not tell");
+}
+
 TEST_F(Query, CountsNewContactsAloneWhereThatIsAsked) {
   const json all = answer("figure.glb --clip hug")["summary"],
              fresh = answer("figure.glb --clip hug --new-contacts")["summary"];

@@ -232,7 +232,7 @@ struct Character {
   std::vector<Animation> animations;
   std::string format;
   std::string up;                   // the axis that points up (scenes/clip/up_axis.h); empty if nothing says
-  double centimetres_per_unit = 0;  // 0 where the file does not say
+  double centimetres_per_unit = 0;  // 0 where neither the file nor its format says
   std::optional<double> frames_per_second{};  // where the file states it as such; else see frame_rate.h
   std::vector<std::string> notes;             // messages about what was left out of the file
 };

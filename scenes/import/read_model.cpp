@@ -346,7 +346,10 @@ Character read_model(const std::filesystem::path& path, const CharacterLimits& l
                      " importer refuses it: " + std::string(error) + "; export it again");
   Character character = Reader(*scene, format, limits).read();
   character.format = format.name;
-  if (format.name == "Collada") character.up = "y";  // to which assimp turns what the file calls up
+  if (format.name == "Collada") {
+    character.up = "y";                    // to which assimp turns what the file calls up
+    character.centimetres_per_unit = 100;  // assimp scales what the file calls a unit to a metre
+  }
   character.notes.insert(character.notes.end(), file.notes.begin(), file.notes.end());
   validate(character, limits);
   return character;

@@ -29,6 +29,7 @@ Character read_gltf(const std::filesystem::path& path, const CharacterLimits& li
   Character character;
   character.format = "glTF 2";
   character.up = "y";
+  character.centimetres_per_unit = 100;
   const gltf::Tree tree = gltf::make_tree(document.model, limits.nodes);
   character.nodes = tree.nodes;
   for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
