@@ -507,9 +507,9 @@ std::string brief_clip_text(const ClipAnswer& answer) {
 std::string details_text(const ClipAnswer& answer) {
   const Sentences said = sentences(answer);
   std::string out;
-  for (const std::string* sentence : {&said.lines, &said.counts, &said.thickness, &said.worst, &said.joints,
-                                      &said.ignored, &said.rest, &said.touching, &said.coinciding, &said.last,
-                                      &said.identical, &said.proven, &said.rate, &said.choice}) {
+  for (const std::string* sentence :
+       {&said.lines, &said.counts, &said.thickness, &said.worst, &said.ignored, &said.rest, &said.touching,
+        &said.coinciding, &said.last, &said.identical, &said.proven, &said.rate, &said.choice}) {
     if (sentence->empty()) continue;
     std::string capital = *sentence;
     capital[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(capital[0])));

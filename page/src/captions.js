@@ -1,9 +1,9 @@
 // What the page says in words beside the list: the verdict, the legend, the numbers of the interval, the names of the panes.
 import { bitOf } from "./data.js";
 import { byId, element } from "./dom.js";
-import { coverOf } from "./painter.js";
+import { coverOf, mostDepth } from "./painter.js";
 import { BLUE, CROSSED, GREY, ORANGE, PINK, RED, SKIN, SKY, YELLOW } from "./palette.js";
-import { CLOSE, contactWord, isBad, isOpen, many, markOf, number, VERDICTS } from "./words.js";
+import { CLOSE, contactWord, isBad, isOpen, lengthText, many, markOf, number, VERDICTS } from "./words.js";
 
 export class Captions {
   constructor(recording) { this.recording = recording; }
@@ -53,7 +53,7 @@ export class Captions {
       if (strategy.start_pairs[interval] > 0) rows.push(item(CROSSED, "crosses"), item(RED, "where"));
       if (this.recording.truths?.get(interval)?.pair) rows.push(item(PINK, "true motion"));
       if (rows.length === 0) rows.push(item(SKIN, `this interval is ${VERDICTS[strategy.verdict[interval]]}`));
-    } else if (mode === "depth") rows.push(item(SKIN, "lies in nothing"), item(YELLOW, "lies in another piece"), item(RED, "deepest; lines: where pieces cross"));
+    } else if (mode === "depth") rows.push(item(SKIN, "lies in nothing"), this.depthScale(), item(RED, "lines: where pieces cross"));
     else if (mode === "positive") rows.push(item(SKIN, "positive: seen from behind throughout the interval"), item(RED, "not positive"));
     else if (mode === "often") rows.push(item(SKIN, "never"), item(YELLOW, "once"), item(RED, "most often"));
     else if (mode === "place" || mode === "part") rows.push(element("b", { place: "one colour for each name", part: "one colour for each part" }[mode]));
@@ -73,6 +73,14 @@ export class Captions {
     if (chosen && chosen.event) rows.push(item(BLUE, "lines of the chosen place"));
     if (chosen && chosen.contact !== undefined && mode !== "depth") rows.push(item(BLUE, "first feature, point and normal"), item(PINK, "second feature"));
     byId("legend").replaceChildren(...rows);
+  }
+
+  // The colours of depths from 0 to the deepest vertex of the clip, with numbers.
+  depthScale() {
+    const scale = element("span", undefined, "scale"), bar = element("i"), most = mostDepth(this.recording);
+    bar.style.background = `linear-gradient(to right, ${YELLOW}, ${RED})`;
+    scale.append(bar, ...[0, 0.5, 1].map((share) => element("b", lengthText(this.recording, share * most))));
+    return scale;
   }
 
   // Draws a frame with a name round each pane of the stage, if there are several.

@@ -1,6 +1,6 @@
-// The list of moments, with the contacts of the chosen one below it.
+// The list of what lies in what, and of moments by the pair of places that meets, with the contacts of the chosen moment below it.
 import { element } from "./dom.js";
-import { momentOfEvent, momentsOf, namesOf, openingOf, timeOf, truthsOf } from "./moments.js";
+import { foldsOf, groupOf, groupsOf, momentOfEvent, momentsOf, namesOf, openingOf, timeOf, truthsOf } from "./moments.js";
 import { both, contactVerb, contactWord, many, momentText } from "./words.js";
 
 const MOST_ROWS = 1500;  // browsers grow slow with more
@@ -21,31 +21,25 @@ export class MomentList {
 
   show(strategy, chosen, playing) {
     if (this.strategy !== strategy) this.fill(strategy);
-    const interval = chosen ? chosen.interval : null;
-    if (this.expanded !== interval && !playing) this.expand(strategy, interval);
+    if (!playing) this.unfold(chosen);
     this.mark(chosen);
   }
 
   fill(strategy) {
     this.strategy = strategy;
-    this.expanded = null;
-    this.rowOf = new Map();  // by interval
-    const moments = momentsOf(strategy);
+    const moments = momentsOf(this.recording, strategy);
     const what = strategy.close ? "close pairs" : "contact";
     const lines = this.recording.truths ? " along straight lines" : "";
     this.title.textContent = (moments.length ? `${many(moments.length, "moment")} with ${what}` : `No ${what}`) + lines;
-    const rows = moments.slice(0, MOST_ROWS).map((moment) => {
-      const { interval } = moment, row = element("button"), counts = [];
-      row.moment = moment;
-      row.append(element("span", both(...namesOf(this.recording, strategy, moment), moment.pair !== undefined ? "crosses" : contactVerb(strategy, moment.contact)), "what"),
-        element("span", momentText(this.recording, interval + timeOf(strategy, moment)), "when"));
-      if (strategy.start_pairs[interval] > 0) counts.push(many(strategy.start_pairs[interval], "crossing pair"));
-      if (strategy.contacts[interval] > 0) counts.push(many(strategy.contacts[interval], contactWord(strategy)));
-      row.append(element("span", counts.join(", "), "many"));
-      this.rowOf.set(interval, row);
-      return row;
-    });
-    if (moments.length > MOST_ROWS) rows.push(element("p", `and ${moments.length - MOST_ROWS} more: use the timeline`));
+    const boxes = [], quiet = [];
+    this.groups = new Map();
+    for (const [key, those] of groupsOf(this.recording, strategy)) {
+      const box = this.groupBox(strategy, those);
+      this.groups.set(key, box);
+      (foldsOf(this.recording, strategy).has(key) ? quiet : boxes).push(box.details);
+    }
+    if (quiet.length > 0) quiet.unshift(element("p", "At joints, less deep than a tenth of the limb's girth:"));
+    const rows = [...boxes, ...quiet];
     if (moments.length === 0) rows.push(element("p", (strategy.close ? "Nothing comes close" : "Nothing touches") + lines + "."));
     const events = this.recording.events.slice(0, MOST_EVENTS).map((event) => {
       const row = element("button", undefined, "event");
@@ -54,7 +48,7 @@ export class MomentList {
       return row;
     });
     const more = this.recording.events.length - events.length;
-    if (events.length > 0) events.unshift(element("p", `Lies in itself in ${many(this.recording.events.length, "place")}${more > 0 ? ", deepest in" : ""}:`));
+    if (events.length > 0) events.unshift(element("p", `${this.placesText()}${more > 0 ? "; deepest in" : ""}:`));
     const truths = truthsOf(this.recording).slice(0, MOST_EVENTS).map((moment) => {
       const row = element("button", undefined, "event");
       row.moment = moment;
@@ -62,24 +56,69 @@ export class MomentList {
       return row;
     });
     this.opening = openingOf(this.recording, strategy);
+    this.unfolded = null;
     this.box.replaceChildren(...truths, ...events, ...rows);
   }
 
-  expand(strategy, interval) {
+  placesText() {
+    const { events } = this.recording, folds = events.filter(({ atJoint }) => atJoint).length, others = events.length - folds;
+    if (others === 0) return `Folds onto itself at joints in ${many(folds, "place")}`;
+    return `Lies in itself in ${many(others, "place")}${folds > 0 ? `, and at joints in ${folds} more` : ""}`;
+  }
+
+  // A pair of places that meets. Its moments are listed once it is unfolded.
+  groupBox(strategy, moments) {
+    const details = element("details"), summary = element("summary"), [first] = moments, last = moments.at(-1);
+    const verb = moments.some(({ pair }) => pair !== undefined) ? "crosses" : contactVerb(strategy, first.contact);
+    const frameOf = (moment) => momentText(this.recording, moment.interval + timeOf(strategy, moment));
+    summary.append(element("span", both(...namesOf(this.recording, strategy, first), verb), "what"),
+      element("span", moments.length > 1 ? `${many(moments.length, "moment")}, ${frameOf(first)} to ${frameOf(last)}` : frameOf(first), "many"));
+    details.append(summary);
+    const box = { details, rows: null };
+    box.fill = () => {
+      if (box.rows) return;
+      box.rows = new Map();  // by interval
+      for (const moment of moments.slice(0, MOST_ROWS)) {
+        const row = element("button"), counts = [], { interval } = moment;
+        row.moment = moment;
+        if (strategy.start_pairs[interval] > 0) counts.push(many(strategy.start_pairs[interval], "crossing pair"));
+        if (strategy.contacts[interval] > 0) counts.push(many(strategy.contacts[interval], contactWord(strategy)));
+        row.append(element("span", frameOf(moment), "what"), element("span", `${counts.join(", ")} in all`, "many"));
+        box.rows.set(interval, row);
+        details.append(row);
+      }
+      if (moments.length > MOST_ROWS) details.append(element("p", `and ${moments.length - MOST_ROWS} more: use the timeline`));
+    };
+    details.addEventListener("toggle", () => { if (details.open) box.fill(); });
+    return box;
+  }
+
+  // Shows the group of a chosen moment, and below the moment the contacts of its pair in that interval.
+  unfold(chosen) {
+    const group = chosen && !chosen.event && !chosen.truth ? groupOf(this.recording, this.strategy, chosen) : null;
+    const key = group === null ? null : `${group} ${chosen.interval}`;
+    if (key === this.unfolded) return;
+    this.unfolded = key;
+    if (this.opened) this.opened.open = false;  // it was opened for another moment
+    this.opened = null;
     this.box.querySelectorAll(".one").forEach((row) => row.remove());
-    this.expanded = interval;
-    const row = this.rowOf.get(interval);
+    const box = this.groups.get(group);
+    if (!box) return;
+    box.fill();
+    if (!box.details.open) this.opened = box.details;
+    box.details.open = true;
+    const row = box.rows.get(chosen.interval), { strategy, recording } = this, own = [];
     if (!row) return;
-    const from = strategy.contactOffset[interval], to = Math.min(strategy.contactOffset[interval + 1], from + MOST_CONTACTS), rows = [];
-    for (let contact = from; contact < to; ++contact) {
+    for (let contact = strategy.contactOffset[chosen.interval]; contact < strategy.contactOffset[chosen.interval + 1]; ++contact)
+      if (groupOf(recording, strategy, { contact }) === group) own.push(contact);
+    const rows = own.slice(0, MOST_CONTACTS).map((contact) => {
       const one = element("button", undefined, "one");
-      one.moment = { interval, contact };
-      one.append(element("span", `${both(...namesOf(this.recording, strategy, one.moment), contactVerb(strategy, contact))} (${strategy.contact_kind[contact] === 0 ? "vertex, face" : "edge, edge"})`, "what"),
+      one.moment = { interval: chosen.interval, contact };
+      one.append(element("span", `${both(...namesOf(recording, strategy, one.moment), contactVerb(strategy, contact))} (${strategy.contact_kind[contact] === 0 ? "vertex, face" : "edge, edge"})`, "what"),
         element("span", `t = ${timeOf(strategy, one.moment).toFixed(4)}`, "when"));
-      rows.push(one);
-    }
-    const left = strategy.contacts[interval] - rows.length;
-    if (left > 0) rows.push(element("p", `and ${many(left, `more ${contactWord(strategy)}`)}`, "one"));
+      return one;
+    });
+    if (own.length > rows.length) rows.push(element("p", `and ${many(own.length - rows.length, `more ${contactWord(strategy)}`)}`, "one"));
     row.after(...rows);
   }
 
@@ -90,7 +129,8 @@ export class MomentList {
       : Array.from(this.box.querySelectorAll("button.one")).find((row) => row.moment.contact === chosen.contact);
     const special = chosen.event || chosen.truth;
     const event = special && Array.from(this.box.querySelectorAll("button.event")).find((row) => (row.moment.event || row.moment.truth) === special);
-    const row = event || one || this.rowOf.get(chosen.interval);
+    const box = special ? null : this.groups.get(groupOf(this.recording, this.strategy, chosen));
+    const row = event || one || box?.rows?.get(chosen.interval);
     if (!row) return;
     row.setAttribute("aria-current", "true");
     if (row === this.current) return;  // whoever scrolls away from it may stay there

@@ -48,7 +48,7 @@ class Viewer {
   }
 
   get active() { return this.recording.strategies[this.strategy]; }
-  get moments() { return momentsOf(this.active); }
+  get moments() { return momentsOf(this.recording, this.active); }
 
   // Which strategies have a pane.
   get shown() {

@@ -30,6 +30,12 @@ export function modesOf({ strategies, clip, place, part, events }) {
   return modes;
 }
 
+// How deep the deepest vertex of the clip lies in another piece of the surface.
+export function mostDepth(recording) {
+  recording.mostDepth ??= recording.insideDepth.reduce((a, b) => Math.max(a, b), 0);
+  return recording.mostDepth;
+}
+
 export class Painter {
   constructor(recording) {
     this.recording = recording;
@@ -68,7 +74,7 @@ export class Painter {
       for (let i = 2 * strategy.crossingOffset[interval]; i < 2 * strategy.crossingOffset[interval + 1]; ++i) setGlowing(strategy.crossing[i], crossed);
       for (const t of this.recording.truths?.get(interval)?.pair ?? []) setGlowing(t, rgb(PINK));
     } else if (mode === "depth") {
-      const depths = this.depthsAt(interval), most = this.mostDepth(), low = rgb(YELLOW), high = rgb(RED), { corners } = this.recording;
+      const depths = this.depthsAt(interval), most = mostDepth(this.recording) || 1, low = rgb(YELLOW), high = rgb(RED), { corners } = this.recording;
       if (depths.size === 0) return;
       for (let t = 0; t < triangles; ++t) {
         const deep = [0, 1, 2].map((k) => depths.get(corners[3 * t + k]) ?? -1), deepest = Math.max(...deep);
@@ -97,11 +103,6 @@ export class Painter {
     for (let i = insideOffset[interval]; i < insideOffset[interval + 1]; ++i)
       depths.set(insideVertex[i], Math.max(insideDepth[i], depths.get(insideVertex[i]) ?? 0));
     return depths;
-  }
-
-  mostDepth() {
-    this.most ??= this.recording.insideDepth.reduce((a, b) => Math.max(a, b), 0) || 1;
-    return this.most;
   }
 
   // The colour in which an observer is drawn, by the number of its cluster: that of its triangles. Null where the surface is

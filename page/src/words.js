@@ -18,6 +18,13 @@ export const markOf = (summary) => (isBad(summary) ? "\u2716" : isOpen(summary) 
 
 // A figure as `cscd` writes it: three significant digits, all digits before the point, commas between thousands.
 export const number = (x) => (Math.abs(x) >= 999.5 ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));
+// A length of the input's positions, in a unit where the input tells its own (distance_text() of bench/answer/event_text.h).
+export function lengthText({ header }, length) {
+  const centimetres = (header.import?.centimetres_per_unit ?? 0) * length;
+  if (!header.import?.centimetres_per_unit || length === 0) return number(length);
+  if (centimetres >= 100) return `${number(centimetres / 100)} m`;
+  return centimetres >= 1 ? `${number(centimetres)} cm` : `${number(10 * centimetres)} mm`;
+}
 export const many = (count, one) => `${count.toLocaleString("en")} ${one}${count === 1 ? "" : "s"}`;
 export const both = (a, b, verb) => (a === b ? (a === "the surface" ? `it ${verb} itself` : `${a} ${verb} itself`) : `${a} ${verb} ${b}`);
 

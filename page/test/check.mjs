@@ -164,7 +164,21 @@ try {
     await page.click("#whole");
     await settle();
     const far = await page.evaluate(() => window.cscd.stage.camera.position.toArray());
-    const row = page.locator("#list > button:not(.one)").nth(Math.min(2, moments - 1));
+    // Every interval in which something meets is a moment of some pair, and a pair's heading says how many it has.
+    const group = page.locator("#list details").nth(Math.min(1, (await page.locator("#list details").count()) - 1));
+    if (!(await group.evaluate((box) => box.open))) await group.locator("summary").click();
+    const row = group.locator("button:not(.one)").last();
+    await row.waitFor();
+    const heading = await group.locator("summary").textContent(), listed = await group.locator("button:not(.one)").count();
+    require(listed === 1 ? !heading.includes(" moments, ") : heading.includes(`${listed.toLocaleString("en")} moments, `), `a pair with ${listed} moments says: ${heading}`);
+    const held = await page.evaluate(() => new Set(Array.from(window.cscd.active.groups.values()).flat().map(({ interval }) => interval)).size);
+    require(held === moments, `${held} of ${moments} moments belong to a pair`);
+    // Folds at joints come last.
+    const order = await page.evaluate(() => {
+      const { list, active } = window.cscd, keys = Array.from(list.groups.keys()), boxes = Array.from(document.querySelectorAll("#list details"));
+      return boxes.map((box) => active.folds.has(keys.find((key) => list.groups.get(key).details === box)));
+    });
+    require(order.lastIndexOf(false) < order.indexOf(true) || !order.includes(true), `folds at joints are not listed last: ${order}`);
     await row.click();
     await settle();
     const arrived = await page.evaluate(() => {
@@ -209,6 +223,13 @@ try {
     require((await page.evaluate(() => window.cscd.position)) === events[Math.min(10, events.length) - 1], "an event does not lead to its deepest frame");
     const deep = await look();
     await picture("event");
+    // The legend says how deep its colours are, up to the deepest vertex of the clip.
+    const scale = await page.evaluate(() => {
+      const { recording } = window.cscd, cm = recording.header.import?.centimetres_per_unit ?? 0, numbers = Array.from(document.querySelectorAll("#legend .scale b"), (b) => b.textContent);
+      const factor = { m: 100, cm: 1, mm: 0.1 }[numbers.at(-1)?.split(" ")[1]];
+      return { numbers, last: parseFloat(numbers.at(-1)?.replaceAll(",", "")) * (factor ?? 1), most: recording.insideDepth.reduce((a, b) => Math.max(a, b), 0) * (cm || 1), unit: (cm > 0) === (factor !== undefined) };
+    });
+    require(scale.numbers[0] === "0" && scale.numbers.length === 3 && Math.abs(scale.last - scale.most) <= 0.006 * scale.most && (scale.unit || scale.most === 0), `the depths' scale says ${JSON.stringify(scale)}`);
     // Its curves are drawn, closed or not, and those of other events with them.
     const curves = await page.evaluate(() => {
       const { recording, chosen, stage } = window.cscd, { curveOffset, pointOffset, curveEvent } = recording, interval = window.cscd.interval();
