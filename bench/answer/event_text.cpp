@@ -42,13 +42,6 @@ std::string moment_text(const Input& input, const ClipMoment& moment) {
   return text;
 }
 
-std::string distance_text(const Input& input, double length) {
-  const double centimetres = length_scale(input).centimetres_per_unit * length;
-  if (!(length_scale(input).centimetres_per_unit > 0)) return short_text(length);
-  if (centimetres >= 100) return figure_text(centimetres / 100) + " m";
-  return centimetres >= 1 ? figure_text(centimetres) + " cm" : figure_text(10 * centimetres) + " mm";
-}
-
 std::string event_text(const Input& input, const OverlapEvent& event) {
   std::string out = event.names.first + (event.crosses ? " in " : " touches ") + other_of(event.names);
   const std::string most = "at most " + distance_text(input, event.depth.upper);

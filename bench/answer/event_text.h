@@ -13,8 +13,6 @@ namespace cscd::bench {
 std::string frame_text(const Input& input, const ClipMoment& moment);
 // "frame 14.25 (0.475 s)".
 std::string moment_text(const Input& input, const ClipMoment& moment);
-// "12.3 cm", "4.56 mm" or "1.23 m" where the input tells its unit, else "0.0123".
-std::string distance_text(const Input& input, double length);
 
 // "hand_l in thigh_l: 1.2 cm deep (at most 1.9 cm), 38 vertices, frames 12 to 31, deepest at 20".
 std::string event_text(const Input& input, const OverlapEvent& event);

@@ -5,7 +5,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "bench/answer/event_text.h"
 #include "bench/inputs/thickness.h"
 #include "bench/strategies/catalogue.h"
 #include "core/base/error.h"

@@ -7,6 +7,7 @@
 #include "bench/inputs/input.h"
 #include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 #include "core/mesh/mean_edge.h"
 #include "scenes/base/joined.h"
 
@@ -66,6 +67,13 @@ void require_unit(const Input& input, const WrittenLength& written, const char* 
   throw InputError(std::string(option) + " " + written.text + ": " + input.name +
                    " does not tell how long its unit is; write 0.01 for a length in that unit, or 0.2e for "
                    "mean edges of its pose at rest");
+}
+
+std::string distance_text(const Input& input, double length) {
+  const double centimetres = length_scale(input).centimetres_per_unit * length;
+  if (!(length_scale(input).centimetres_per_unit > 0)) return short_text(length);
+  if (centimetres >= 100) return figure_text(centimetres / 100) + " m";
+  return centimetres >= 1 ? figure_text(centimetres) + " cm" : figure_text(10 * centimetres) + " mm";
 }
 
 std::string why_not_within(const ThicknessRequest& request, const Strategy& strategy) {

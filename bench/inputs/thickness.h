@@ -17,6 +17,9 @@ LengthScale length_scale(const Input& input);
 // its own.
 void require_unit(const Input& input, const WrittenLength& written, const char* option);
 
+// "12.3 cm", "4.56 mm" or "1.23 m" where the input tells its unit, else "0.0123".
+std::string distance_text(const Input& input, double length);
+
 // Throws InputError, naming those that can, where a strategy or an elementary test cannot answer the request:
 // because it knows no distance, or cannot leave pairs out.
 void require_fit(const ThicknessRequest& request, const Strategy& strategy);

@@ -18,7 +18,7 @@ export const markOf = (summary) => (isBad(summary) ? "\u2716" : isOpen(summary) 
 
 // A figure as `cscd` writes it: three significant digits, all digits before the point, commas between thousands.
 export const number = (x) => (Math.abs(x) >= 999.5 ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));
-// A length of the input's positions, in a unit where the input tells its own (distance_text() of bench/answer/event_text.h).
+// A length of the input's positions, in a unit where the input tells its own (distance_text() of bench/inputs/thickness.h).
 export function lengthText({ header }, length) {
   const centimetres = (header.import?.centimetres_per_unit ?? 0) * length;
   if (!header.import?.centimetres_per_unit || length === 0) return number(length);

@@ -16,7 +16,7 @@ inline constexpr char kAsked[] = "asked", kStated[] = "file", kSpaced[] = "keys"
 struct ImportReport {
   std::string format;
   std::string up;                   // the axis that points up in positions (up_axis.h); empty if nothing says
-  double centimetres_per_unit = 0;  // 0 where neither the file nor its format says; positions are never scaled
+  double centimetres_per_unit = 0;  // 0 where file and format do not say; positions are never scaled
   std::size_t nodes = 0, meshes = 0, joints = 0, vertices = 0, triangles = 0;  // counts of the file
   std::size_t most_influences = 0;  // largest number of influences of one vertex
 
