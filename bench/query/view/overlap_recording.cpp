@@ -63,7 +63,8 @@ void OverlapRecording::write(Sections& sections) const {
 nlohmann::json event_lines(const ClipAnswer& answer) {
   nlohmann::json out = nlohmann::json::array();
   std::vector<std::size_t> order = deepest_first(answer.events);
-  std::ranges::stable_partition(order, [&](std::size_t i) { return !answer.joints.fold(answer.events[i]); });
+  std::stable_partition(order.begin(), order.end(),
+                        [&](std::size_t i) { return !answer.joints.fold(answer.events[i]); });
   for (const std::size_t i : order)
     out.push_back({{"event", i}, {"text", event_text(answer.input, answer.events[i])}});
   return out;
