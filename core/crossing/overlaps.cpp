@@ -69,8 +69,7 @@ class PoseOverlaps {
   Overlaps find(std::span<const CrossingPair> pairs) {
     pairs_ = pairs;
     out_.crossing = find_curves(mesh_, exact_, pairs, positions_);
-    const Meeting meeting = meeting_without_curves();
-    if (crossing().curves.empty() && meeting.empty()) return std::move(out_);
+    if (crossing().curves.empty() && !any_touches_a_closed_one()) return std::move(out_);
     if (crossing().degenerate > 0) find_ties();
     finder_.visited_.resize(mesh_.vertex_count(), 0);
     finder_.listed_.resize(mesh_.triangle_count(), 0);
@@ -82,8 +81,7 @@ class PoseOverlaps {
     gather_skins();
     for (std::size_t r = 0; r < regions_.size(); ++r) measure(r);
     group();
-    for (const auto& [both, touching] : meeting)
-      if (!find_enclosed(both.first, both.second, touching)) find_enclosed(both.second, both.first, touching);
+    find_enclosed();
     std::ranges::stable_sort(out_.overlaps, std::ranges::greater{},
                              [](const Overlap& o) { return o.depth.lower; });
     parts_.reset();  // before its curves go
@@ -248,7 +246,32 @@ class PoseOverlaps {
         for (const VertexId v : found.region.vertices)
           for (const TriangleId t : mesh_.triangles_at(v))
             skin_[{found.region.other, found.region.own}].push_back(t);
-    for (auto& [both, triangles] : skin_) sort_unique(triangles);
+    for (auto& [both, triangles] : skin_) {
+      sort_unique(triangles);
+      spread_on_walls(triangles);
+    }
+  }
+  // Adds the rest of the flat walls in which triangles lie: what stands on one triangle of a wall is as far
+  // from the wall as from the nearest of its triangles.
+  void spread_on_walls(std::vector<TriangleId>& triangles) {
+    const std::uint32_t list = ++finder_.lists_;
+    for (const TriangleId t : triangles) finder_.listed_[+t] = list;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      const Triangle c = mesh_.corners(triangles[i]);
+      const Vec3& origin = positions_[+c[0]];
+      const Vec3 normal = (positions_[+c[1]] - origin).cross(positions_[+c[2]] - origin);
+      const double slack = kOnSheet * largest_ * normal.norm();
+      const auto is_in_plane = [&](VertexId v) {
+        return std::abs(normal.dot(positions_[+v] - origin)) <= slack;
+      };
+      if (!(slack > 0)) continue;
+      for (const EdgeId edge : mesh_.edges_of(triangles[i]))
+        for (const TriangleId next : mesh_.triangles_at(edge))
+          if (finder_.listed_[+next] != list && std::ranges::all_of(mesh_.corners(next), is_in_plane)) {
+            finder_.listed_[+next] = list;
+            triangles.push_back(next);
+          }
+    }
   }
   const SheetDistance& to_skin(std::int32_t own, std::int32_t other) {
     const std::pair both(own, other);
@@ -456,35 +479,52 @@ class PoseOverlaps {
     }
   }
 
-  // Closed components that meet and on which no curve of both lies, with the pairs of triangles in which they
-  // do. One may lie in the other, and where ties are broken inwards, it pierces nothing of its wall.
-  using Meeting = std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::array<TriangleId, 2>>>;
-  Meeting meeting_without_curves() const {
-    const auto components = [&](TriangleId a, TriangleId b) {
-      return std::minmax({mesh_.component(a), mesh_.component(b)});
-    };
-    Meeting out;
-    for (const auto& [a, b] : pairs_) {
-      const auto both = components(a, b);
-      if (both.first == both.second || finder_.marks_.is_open[index(both.first)] ||
-          finder_.marks_.is_open[index(both.second)])
-        continue;
-      const bool in_order = mesh_.component(a) == both.first;
-      out[both].push_back(in_order ? std::array{a, b} : std::array{b, a});
-    }
-    for (const CrossingCurve& curve : crossing().curves)
-      out.erase(components(curve.segments.front()[0], curve.segments.front()[1]));
-    return out;
+  bool is_open(std::int32_t component) const { return finder_.marks_.is_open[index(component)]; }
+  bool any_touches_a_closed_one() const {
+    return std::ranges::any_of(pairs_, [&](const CrossingPair& pair) {
+      const std::int32_t a = mesh_.component(pair.first), b = mesh_.component(pair.second);
+      return a != b && (!is_open(a) || !is_open(b));
+    });
   }
 
-  // Takes a component for a region where it lies in another one altogether. Returns whether it does.
-  bool find_enclosed(std::int32_t own, std::int32_t other,
-                     const std::vector<std::array<TriangleId, 2>>& touching) {
-    if (parts_->is_inward(own) || parts_->is_inward(other)) return false;  // a cavity holds nothing
+  // Finds components that lie in another one altogether. Where ties are broken inwards, such a one pierces
+  // nothing of the wall that it touches, or nothing that cuts vertices off.
+  void find_enclosed() {
+    std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::array<TriangleId, 2>>> meeting;
+    const auto both_of = [&](std::int32_t a, std::int32_t b) {
+      return std::pair(std::min(a, b), std::max(a, b));
+    };
+    for (const auto& [a, b] : pairs_) {
+      const std::int32_t of_a = mesh_.component(a), of_b = mesh_.component(b);
+      if (of_a == of_b || (is_open(of_a) && is_open(of_b))) continue;
+      meeting[both_of(of_a, of_b)].push_back(of_a < of_b ? std::array{a, b} : std::array{b, a});
+    }
+    for (const Overlap& overlap : out_.overlaps)
+      for (const CrossingRegion& region : overlap.regions)
+        if (region.depth.lower > kOnSheet * largest_) meeting.erase(both_of(region.own, region.other));
+    for (const auto& entry : meeting) {
+      const auto [one, other] = entry.first;
+      if (!is_enclosed(one, other, entry.second) && !is_enclosed(other, one, entry.second)) continue;
+      // What ties make between the two belongs to it.
+      std::erase_if(out_.overlaps, [&](const Overlap& overlap) {
+        if (overlap.curves.empty()) return false;
+        const auto& segment = crossing().curves[index(overlap.curves.front())].segments.front();
+        return entry.first == both_of(mesh_.component(segment[0]), mesh_.component(segment[1]));
+      });
+    }
+  }
+
+  // Adds the overlap of a component that lies in a closed one altogether. Returns whether it does.
+  bool is_enclosed(std::int32_t own, std::int32_t other,
+                   const std::vector<std::array<TriangleId, 2>>& touching) {
+    if (is_open(other)) return false;
+    const bool inward = !is_open(own) && parts_->is_inward(own);
+    if (inward != parts_->is_inward(other)) return false;  // one is a cavity, which holds nothing
     CrossingRegion region;
     region.own = own;
     region.other = other;
-    const SheetDistance& to = to_skin(own, other);
+    // As where a curve ends on an open piece, the distance is that to the whole of the other.
+    const SheetDistance& to = is_open(own) ? to_component(other) : to_skin(own, other);
     const std::uint32_t number = ++finder_.lists_;
     for (const TriangleId t : parts_->marks().triangles_of(own)) {
       const Triangle& c = mesh_.corners(t);

@@ -32,10 +32,10 @@ struct CrossingDepth {
 // A curve lies on the two sheets that cross in it. Its course on one of them is an *image* of the curve:
 // image 2 c + s is that of curve c on sheet s, which is 0 or 1. Each vertex belongs to the image that is
 // nearest along edges. Its depth is the distance to the skin that was gone through: to all triangles of the
-// other component that meet this one or have a vertex in it, flush walls among them. Within one component, it
-// is the distance to what the vertex's own curve cuts off: to all triangles that have a vertex there, or that
-// the curve runs through. A component that lies in another one altogether, and touches its wall, has no
-// curve.
+// other component that meet this one or have a vertex in it, and to the flat walls in which these lie. Within
+// one component, it is the distance to what the vertex's own curve cuts off: to all triangles that have a
+// vertex there, or that the curve runs through. A component that lies in another one altogether, and touches
+// its wall, has no curve.
 struct CrossingRegion {
   std::int32_t own = 0, other = 0;  // the components of this sheet and of the other
   // On which side of the curves the region lies. Behind the faces of the other sheet, inside a closed body;

@@ -458,12 +458,18 @@ TEST(Overlaps, AreAsDeepInEveryNumbering) {
       {"in a room, flush with a wall", room, box({0, 1, 1}, {2, 3, 3}), 2},
       {"in a room, flush with three walls", room, box({0, 0, 0}, {2, 2, 2}), 2},
       {"in a room, on its floor", room, tetrahedron, 3},
+      {"in a room, off the grid of its wall", room, box({0, 1.5, 1}, {2, 3.5, 3}), 2},
+      {"on one triangle of a wall", room, box({0, 0.5, 2.5}, {2, 1, 3}), 2},
+      {"a sheet in a room, a vertex on its wall",
+       room,
+       {{{0, 2, 2}, {2, 1, 2}, {2, 3, 2}}, {test::corners(0, 1, 2)}},
+       1},
       {"two walls flush", box({2, 3, 1}, {4, 4, 3}), box({1, 2, 2}, {4, 4, 4}), 1},
       {"pressed in, a side flush", room, box({0, 1, 3.5}, {2, 3, 6}), 0.5},
       {"resting on it", room, box({1, 1, 4}, {3, 3, 6}), 0}};
   std::mt19937 random(7);
   for (const auto& [name, one, other, depth] : cases)
-    for (int n = 0; n < 12; ++n) {
+    for (int n = 0; n < 60; ++n) {
       SCOPED_TRACE(std::string(name) + ", numbering " + std::to_string(n));
       const test::Shape both = renumbered(test::together(one, other), random);
       const TriangleMesh mesh = both.mesh();

@@ -22,7 +22,10 @@ class Results:
     def __init__(self, kind, page, program):
         self.folder = newest(kind)
         self.link = "../" * page.count("/") + self.folder.relative_to(ROOT).as_posix()
-        document = document_of(program, *records_in(self.folder))["tables"]
+        report = document_of(program, *records_in(self.folder))
+        self.stages = {record["scene"]: {row["name"]: row["stages"] for row in record["strategies"]} for record in report["records"]
+                       if record["pipeline"] != "published"}
+        document = report["tables"]
         self.shaped = {shaped["id"]: shaped for shaped in document["shaped"]}
         # What was measured in the pipeline `published` has rows of its own on the page of the paper's figures alone.
         self.cells = {table["id"]: {row["scene"]: {cell["key"]: cell for cell in row["cells"] if cell["pipeline"] != "published"}
@@ -161,18 +164,11 @@ def steps(results):
 SWEEP = ("base", "aabb", "mcd", "selfccd", "embree", "cgal_boxes", "fcl", "rvbc", "drvbc_unmerged", "drvbc", "drvbc_fast",
          "drvbc_fast_complete")
 SWEEP_CHARACTERS, SWEEP_FRAMES, SWEEP_VERIFY_EVERY, SWEEP_TIME_EVERY, SWEEP_REPETITIONS = 1000, 10000, 9, 21, 5
-STAGES = ("refit", "rv_update", "traversal", "elementary")
 
 
 def mean(values):
     values = list(values)
     return sum(values) / len(values)
-
-
-def query_ms(strategy):
-    """The mean over all samples of what a query takes, with refit."""
-    stages = [strategy["ms"][stage] for stage in STAGES if stage in strategy["ms"]]
-    return sum(mean(ms for repetition in stage for ms in repetition) for stage in stages)
 
 
 def preparation_ms(strategy):
@@ -185,7 +181,7 @@ def sweep(results):
     names = [record["scene"] for record in results.records if not record["scene"].endswith("_contact")]
     records = [read_json(results.folder / f"{name}.json.gz") for name in names]
     rows = [{s["name"]: s for s in record["strategies"]} for record in records]
-    query = {name: mean(query_ms(row[name]) for row in rows) for name in SWEEP}
+    query = {name: mean(sum(results.stages[scene][name].values()) for scene in names) for name in SWEEP}
     prepare = {name: mean(preparation_ms(row[name]) for row in rows) for name in SWEEP}
     verify_ms = mean(1000 * r["verification"]["seconds"] / len(r["verification"]["intervals"]) for r in records)
     packed = mean((results.folder / f"{name}.json.gz").stat().st_size / len(r["counted_intervals"]) / len(r["strategies"])
