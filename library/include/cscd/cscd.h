@@ -221,7 +221,8 @@ class CSCD_EXPORT SelfCollision {
       Eigen::Vector3d out;        // its way
     };
     // Curves and regions that hang together. Without regions, no vertex lies in the other sheet; the depth is
-    // then that of points between two piercings of an edge.
+    // then that of points between two piercings of an edge. Without curves, a component lies in another one
+    // altogether, and touches its wall.
     struct Overlap {
       std::vector<Curve> curves;
       std::vector<Region> regions;  // deepest first
