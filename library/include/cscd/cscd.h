@@ -204,8 +204,10 @@ class CSCD_EXPORT SelfCollision {
       // of each pair of the curve's `faces`.
       std::vector<std::array<int, 2>> bounds;
       std::vector<int> vertices;  // from the curves inwards
-      // Of each vertex, the way to the nearest point of what the same curves cut off the other sheet, and how
-      // long it is. A repair moves vertices along their ways.
+      // Of each vertex, the way to the nearest point of the skin that was gone through, and how long it is:
+      // of all faces of the other component that meet this one or have a vertex in it, and of the flat walls
+      // in which these lie; within one component, of what the same curve cuts off. A repair moves vertices
+      // along their ways.
       std::vector<Eigen::Vector3d> way;
       std::vector<double> distance;
       double area;  // a third of each face for each of its corners here
