@@ -105,7 +105,7 @@ export interface Region {
   /** The curves that bound it, and whether it lies on their first or second sheet, [2 * curves]. */
   bounds: Int32Array;
   vertices: Int32Array;
-  /** Of each vertex, the way to the nearest point of the other sheet's part, [3 * vertices], and its length. */
+  /** Of each vertex, the way to the nearest point of the skin that was gone through, [3 * vertices], and its length. */
   ways: Float64Array;
   distances: Float64Array;
   area: number;

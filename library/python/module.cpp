@@ -237,8 +237,8 @@ PYBIND11_MODULE(_cscd, module) {
           "[vertices] float: the lengths of the ways.")
       .def_property_readonly(
           "ways", [](const Region& r) { return table_of(r.way); },
-          "[vertices, 3] float: from each to the nearest point of what the same curves cut off the other "
-          "sheet. A repair moves vertices along their ways.")
+          "[vertices, 3] float: from each to the nearest point of the skin that was gone through. A "
+          "repair moves vertices along their ways.")
       .def_readonly("area", &Region::area)
       .def_readonly("behind", &Region::behind,
                     "Whether it lies behind the faces of the other sheet, inside a closed surface. Otherwise "
