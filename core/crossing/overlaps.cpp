@@ -447,9 +447,11 @@ class PoseOverlaps {
                  {images, vertices, parts_->marks().is_cut, parts_->marks().is_on_curve});
   }
 
+  // Of two that are as deep, a vertex goes before a point on an edge.
   static void deepest_of(CrossingDepth& depth, const CrossingDepth& other) {
     const double upper = std::max(depth.upper, other.upper);
-    if (depth.nearest == TriangleId{-1} || other.lower > depth.lower) depth = other;
+    const auto order = [](const CrossingDepth& d) { return std::pair(d.lower, d.vertex != VertexId{-1}); };
+    if (depth.nearest == TriangleId{-1} || order(other) > order(depth)) depth = other;
     depth.upper = upper;
   }
 
