@@ -208,7 +208,8 @@ void add_view(CLI::App& app) {
       "  cscd view character.glb                    its first clip that moves\n"
       "  cscd view character.glb --clip all         every clip in one page, with a list to choose from\n"
       "  cscd view octopus --strategy drvbc --strategy drvbc_fast -o octopus.html\n\n"
-      "The page needs no network and no server: open it in a browser. It begins where something lies deepest,\n"
+      "The page needs no network and no server: open it in a browser. It begins where something lies "
+      "deepest,\n"
       "or else at the first contact.\n"
       "Answers are those of cscd query with the same options. Positions are rounded to 65535 steps across\n"
       "the clip's box for the page; the answers come from the exact ones.");
