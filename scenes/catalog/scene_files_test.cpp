@@ -31,7 +31,9 @@ struct Asked {
   std::size_t triangles, vertices;
   Surface surface = Surface::sphere;
 };
+// The one that takes longest to make comes first, so that it is there when the next test asks for it.
 constexpr Asked kScenes[] = {
+    {"skirt_contact", 50015, 25227, Surface::sphere_and_ring},
     {"box", 25088, 12546},
     {"octopus", 47976, 23990},
     {"hand", 11208, 5606},
@@ -52,7 +54,6 @@ constexpr Asked kScenes[] = {
     {"bag", 50000, 25002},
     {"bag_contact", 50000, 25002},
     {"skirt", 50015, 25227, Surface::sphere_and_ring},
-    {"skirt_contact", 50015, 25227, Surface::sphere_and_ring},
 };
 void PrintTo(const Asked& asked, std::ostream* out) {
   *out << asked.name;
