@@ -136,7 +136,7 @@ void OverlapEvents::extend(OverlapEvent& event, const Overlaps& all, const Overl
   event.pairs = event.vertices = 0;
   event.area = 0;
   event.at_rest = at_rest;
-  event.crosses = at_rest.has_value() || overlap.curves.empty();
+  event.crosses = at_rest.has_value() || overlap.curves.empty();  // one lies in the other altogether
   for_each_segment(all.crossing, overlap, [&](const auto& segment) {
     event.crosses = event.crosses || !answer.start_touching.contains(pair_of(segment));
   });

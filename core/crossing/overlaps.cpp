@@ -12,6 +12,7 @@
 #include "core/base/sort_unique.h"
 #include "core/crossing/reach.h"
 #include "core/crossing/sheet_distance.h"
+#include "core/crossing/skins.h"
 #include "core/elementary/exact/static_contact.h"
 #include "core/geometry/unit_scale.h"
 #include "core/mesh/adjacency.h"
@@ -64,7 +65,8 @@ class PoseOverlaps {
         exact_(exact),
         positions_(positions),
         largest_(largest),
-        each_way_(each_way) {}
+        each_way_(each_way),
+        skins_(mesh_, positions, kOnSheet * largest) {}
 
   Overlaps find(std::span<const CrossingPair> pairs) {
     pairs_ = pairs;
@@ -232,52 +234,19 @@ class PoseOverlaps {
     });
   }
 
-  // The skin of one component that another one has gone through: all triangles that meet the other one, or
-  // that have a vertex in a region there. Flush walls are among them.
   void gather_skins() {
     for (const auto& [a, b] : pairs_) {
       const std::int32_t of_a = mesh_.component(a), of_b = mesh_.component(b);
       if (of_a == of_b) continue;
-      skin_[{of_a, of_b}].push_back(b);
-      skin_[{of_b, of_a}].push_back(a);
+      skins_.add(of_a, of_b, b);
+      skins_.add(of_b, of_a, a);
     }
     for (const Found& found : regions_)
       if (found.region.own != found.region.other)
         for (const VertexId v : found.region.vertices)
           for (const TriangleId t : mesh_.triangles_at(v))
-            skin_[{found.region.other, found.region.own}].push_back(t);
-    for (auto& [both, triangles] : skin_) {
-      sort_unique(triangles);
-      spread_on_walls(triangles);
-    }
-  }
-  // Adds the rest of the flat walls in which triangles lie: what stands on one triangle of a wall is as far
-  // from the wall as from the nearest of its triangles.
-  void spread_on_walls(std::vector<TriangleId>& triangles) {
-    const std::uint32_t list = ++finder_.lists_;
-    for (const TriangleId t : triangles) finder_.listed_[+t] = list;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-      const Triangle c = mesh_.corners(triangles[i]);
-      const Vec3& origin = positions_[+c[0]];
-      const Vec3 normal = (positions_[+c[1]] - origin).cross(positions_[+c[2]] - origin);
-      const double slack = kOnSheet * largest_ * normal.norm();
-      const auto is_in_plane = [&](VertexId v) {
-        return std::abs(normal.dot(positions_[+v] - origin)) <= slack;
-      };
-      if (!(slack > 0)) continue;
-      for (const EdgeId edge : mesh_.edges_of(triangles[i]))
-        for (const TriangleId next : mesh_.triangles_at(edge))
-          if (finder_.listed_[+next] != list && std::ranges::all_of(mesh_.corners(next), is_in_plane)) {
-            finder_.listed_[+next] = list;
-            triangles.push_back(next);
-          }
-    }
-  }
-  const SheetDistance& to_skin(std::int32_t own, std::int32_t other) {
-    const std::pair both(own, other);
-    SheetDistance& to = to_skin_.try_emplace(both, mesh_, positions_, skin_.at(both)).first->second;
-    to.start_anew();
-    return to;
+            skins_.add(found.region.other, found.region.own, t);
+    skins_.spread();
   }
   // Whether what a curve cuts off the other sheet of an image is not bounded (CrossingRegion::other_is_open).
   bool is_open_beyond(std::int32_t image) const {
@@ -292,7 +261,7 @@ class PoseOverlaps {
     is_open = is_open_beyond(image);
     const std::int32_t here = mesh_.component(sheet_[index(image)].front()),
                        beyond = mesh_.component(sheet_[index(opposite)].front());
-    if (here != beyond) return is_open ? to_component(beyond) : to_skin(here, beyond);
+    if (here != beyond) return is_open ? to_component(beyond) : skins_.to(here, beyond);
     std::vector<TriangleId> triangles;
     const std::uint32_t list = ++finder_.lists_;
     const auto add = [&](std::int32_t of) {
@@ -353,7 +322,7 @@ class PoseOverlaps {
     if (region.own != region.other) {
       region.other_is_open =
           std::ranges::any_of(region.images, [&](std::int32_t image) { return is_open_beyond(image); });
-      look(region.other_is_open ? to_component(region.other) : to_skin(region.own, region.other), {});
+      look(region.other_is_open ? to_component(region.other) : skins_.to(region.own, region.other), {});
     } else {
       for (const std::int32_t image : region.images) {
         bool is_open = false;
@@ -506,7 +475,7 @@ class PoseOverlaps {
         if (region.depth.lower > kOnSheet * largest_) meeting.erase(both_of(region.own, region.other));
     for (const auto& entry : meeting) {
       const auto [one, other] = entry.first;
-      if (!is_enclosed(one, other, entry.second) && !is_enclosed(other, one, entry.second)) continue;
+      if (!add_enclosed(one, other, entry.second) && !add_enclosed(other, one, entry.second)) continue;
       // What ties make between the two belongs to it.
       std::erase_if(out_.overlaps, [&](const Overlap& overlap) {
         if (overlap.curves.empty()) return false;
@@ -517,8 +486,8 @@ class PoseOverlaps {
   }
 
   // Adds the overlap of a component that lies in a closed one altogether. Returns whether it does.
-  bool is_enclosed(std::int32_t own, std::int32_t other,
-                   const std::vector<std::array<TriangleId, 2>>& touching) {
+  bool add_enclosed(std::int32_t own, std::int32_t other,
+                    const std::vector<std::array<TriangleId, 2>>& touching) {
     if (is_open(other)) return false;
     const bool inward = !is_open(own) && parts_->is_inward(own);
     if (inward != parts_->is_inward(other)) return false;  // one is a cavity, which holds nothing
@@ -526,7 +495,7 @@ class PoseOverlaps {
     region.own = own;
     region.other = other;
     // As where a curve ends on an open piece, the distance is that to the whole of the other.
-    const SheetDistance& to = is_open(own) ? to_component(other) : to_skin(own, other);
+    const SheetDistance& to = is_open(own) ? to_component(other) : skins_.to(own, other);
     const std::uint32_t number = ++finder_.lists_;
     for (const TriangleId t : parts_->marks().triangles_of(own)) {
       const Triangle& c = mesh_.corners(t);
@@ -573,9 +542,7 @@ class PoseOverlaps {
   std::vector<std::int32_t> region_of_image_;   // [images], or kNone
   std::vector<std::vector<TriangleId>> sheet_;  // [images]
   std::map<std::int32_t, SheetDistance> to_component_;
-  // Of the second component, by the first.
-  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<TriangleId>> skin_;
-  std::map<std::pair<std::int32_t, std::int32_t>, SheetDistance> to_skin_;
+  Skins skins_;
   std::vector<std::pair<VertexId, std::int32_t>> on_sheet_;  // with the component of that sheet; sorted
   std::map<std::pair<std::size_t, std::int32_t>, std::int32_t> sizes_;  // of parts of groups
   std::optional<SheetDistance> to_sheet_;

@@ -29,27 +29,28 @@ TESTS = ROOT / "library" / "js" / "test"
 LIBRARY, PROGRAM = ROOT / "build-isas", ROOT / "build-sets"
 
 
-def ours(name):
-    """What this machine and this build have of a set: nothing, where the library refuses it by name."""
+def environment_of(name):
+    """The environment in which the Python module and the program take a set."""
     return os.environ | {"PYTHONPATH": str(LIBRARY / "python"), "CSCD_ISA": name}
 
 
 def has(name):
+    """Whether this machine and this build have a set. The library refuses others when it is first used."""
     done = output_of("/usr/bin/python3", "-c", "import sys\ntry:\n import cscd; cscd.SelfCollision([[0, 1, 2]], [[0, 0, 0], [1, 0, 0], [0, 1, 0]])\n"
-                     "except Exception as error:\n print(error)", env=ours(name))
+                     "except Exception as error:\n print(error)", env=environment_of(name))
     return not done
 
 
 def answer(name, clip, passes):
     if name == NODE:
         return json.loads(output_of("node", ROOT / "build-wasm" / "js" / "test" / "digest.mjs", clip, passes))
-    return json.loads(output_of("/usr/bin/python3", TESTS / "digest.py", clip, passes, env=ours(name)))
+    return json.loads(output_of("/usr/bin/python3", TESTS / "digest.py", clip, passes, env=environment_of(name)))
 
 
 def measured(cscd, scene, sets, steps, rounds, folder):
     """Milliseconds by question and set: medians over rounds. All sets have to give the same answers."""
     clip, rows, digests = folder / f"{scene}.bin", {}, {}
-    output_of("/usr/bin/python3", TESTS / "digest.py", clip, 0, cscd, scene, 0, steps, env=ours(sets[0]))
+    output_of("/usr/bin/python3", TESTS / "digest.py", clip, 0, cscd, scene, 0, steps, env=environment_of(sets[0]))
     for turn in range(rounds):
         for name in sets if turn % 2 == 0 else sets[::-1]:
             said = answer(name, clip, 3)
@@ -68,7 +69,7 @@ def against_paper(scene, name, folder, smoke):
     """A record of `cscd run` on one set."""
     path = folder / "run.part.json"
     call(PROGRAM / "cscd", "run", "--scene", scene, "--strategy", f"{PAPER},{FAST}", "--json", path, "--force",
-         *(["--smoke"] if smoke else []), env=ours(name), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+         *(["--smoke"] if smoke else []), env=environment_of(name), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     record = json.loads(path.read_text())
     path.unlink()
     return record
@@ -103,7 +104,7 @@ def page(data):
         lines += [f"## {question[0].upper()}{question[1:]}", "", *table(["scene", "AVX2, ms", *heads], rows), ""]
     if data["paper"]:
         names = list(next(iter(data["paper"].values())))
-        lines += [f"## The paper's method over the fast engine", "", f"`{PAPER}` over `{FAST}`, milliseconds a query and their ratio, as `cscd run` "
+        lines += ["## The paper's method over the fast engine", "", f"`{PAPER}` over `{FAST}`, milliseconds a query and their ratio, as `cscd run` "
                   "takes and verifies them.", "",
                   *table(["scene", *(f"{TITLES[name]}: {what}" for name in names for what in (f"`{PAPER}`", f"`{FAST}`", "ratio"))],
                          [[scene, *(number(value) for name in names for value in (*by[name], by[name][0] / by[name][1]))]
