@@ -13,7 +13,7 @@
 #include "core/drvbc/drvbc.h"
 #include "core/fast/drvbc_fast.h"
 #include "core/radial/setup.h"
-#include "core/session/small_steps.h"
+#include "core/session/near_strategy.h"
 
 namespace cscd::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/session/small_steps.h"
+#include "core/session/near_strategy.h"
 
 #include <optional>
 
@@ -54,7 +54,7 @@ class NearDetector : public Detector {
 
 }  // namespace
 
-Prepared make_near(const StrategyInput& setup) {
+Prepared make_drvbc_fast_near(const StrategyInput& setup) {
   Prepared out = kDrvbcFastComplete.make(setup);
   out.detector = std::make_unique<NearDetector>(setup, std::move(out.detector));
   return out;
