@@ -36,8 +36,8 @@ class KeptSamples {
     std::ifstream stream(file, std::ios::binary);
     const std::string packed{std::istreambuf_iterator<char>(stream), {}};
     const ordered_json document = ordered_json::parse(without_gzip(packed, file.string(), 1u << 26));
-    contacts = parse_record(document.at("contacts").dump(), file.string());
-    const Record common = parse_record(document.at("record").dump(), file.string());
+    contacts = record_from(document.at("contacts"), file.string());
+    const Record common = record_from(document.at("record"), file.string());
     for (const ordered_json& process : document.at("processes")) {
       Record record = common;
       const std::string layout = process.at("layout");

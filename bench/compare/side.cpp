@@ -15,15 +15,14 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 void add_file(const fs::path& path, bool named_itself, std::vector<Record>& records) {
-  const std::string text = record_text(path);
-  const ordered_json document = ordered_json::parse(text, nullptr, false);
+  const ordered_json document = read_document(path);
   if (is_google_benchmark(document)) {
     records.push_back(record_from_google_benchmark(document, path.string()));
     return;
   }
   const bool is_record =
       document.is_object() && document.contains("schema") && document["schema"] == kRunSchema;
-  if (is_record || named_itself) records.push_back(parse_record(text, path.string()));
+  if (is_record || named_itself) records.push_back(record_from(document, path.string()));
 }
 
 void add_named(const fs::path& path, std::vector<Record>& records) {

@@ -140,8 +140,8 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   }
   const scenes::ClipHeader& header = clip->header();
   TriangleMesh mesh(header.triangles, header.vertex_count, name);
-  std::optional<Rig> rig = scenes::rig_of(*clip);
   const scenes::FrameView first = clip->load_frame(0);
+  std::optional<Rig> rig = scenes::rig_of(header, first);
   std::vector<Vec3> reference(first.positions.begin(), first.positions.end());
   Input input{name,           std::move(clip),   std::move(mesh),   std::move(reference),
               std::move(rig), std::move(import), std::move(sources)};

@@ -249,10 +249,8 @@ ordered_json to_json(const Record& record) {
   return out;
 }
 
-Record parse_record(const std::string& text, const std::string& where) {
+Record record_from(const ordered_json& document, const std::string& where) {
   try {
-    const ordered_json document = ordered_json::parse(text, nullptr, false);
-    if (document.is_discarded()) throw InputError("is no JSON and so no record");
     if (const std::string schema = document.at("schema"); schema != kRunSchema)
       throw InputError("its schema is " + schema + ", not " + std::string(kRunSchema));
     if (const std::string violation = schema_violation(document, "run.schema.json"); !violation.empty())
@@ -286,16 +284,20 @@ Record parse_record(const std::string& text, const std::string& where) {
   }
 }
 
-std::string record_text(const std::filesystem::path& path) {
+ordered_json read_document(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   if (!file || !(text << file.rdbuf()))
     throw InputError("record " + path.string() + ": cannot be read; name a file that cscd wrote");
-  return without_gzip(text.str(), "record " + path.string(), kMostBytes);
+  ordered_json document =
+      ordered_json::parse(without_gzip(text.str(), "record " + path.string(), kMostBytes), nullptr, false);
+  if (document.is_discarded())
+    throw InputError("record " + path.string() + ": is no JSON and so no record; name what cscd run wrote");
+  return document;
 }
 
 Record read_record(const std::filesystem::path& path) {
-  return parse_record(record_text(path), path.string());
+  return record_from(read_document(path), path.string());
 }
 
 }  // namespace cscd::bench

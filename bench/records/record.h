@@ -150,13 +150,13 @@ void append_times(const StageTimes& ms, TimeColumns& columns, std::size_t repeti
 
 nlohmann::ordered_json to_json(const Record& record);
 
-// Returns the text of a record of any kind, unpacked if the file is a gzip file. Throws InputError, naming
-// the file, if it cannot be read or unpacked.
-std::string record_text(const std::filesystem::path& path);
+// Returns the JSON of a record of any kind; a gzip file is unpacked first. Throws InputError, naming the
+// file, if it cannot be read or unpacked, or holds no JSON.
+nlohmann::ordered_json read_document(const std::filesystem::path& path);
 
 // Throws InputError, naming the file, unless it is a whole record of this schema.
 Record read_record(const std::filesystem::path& path);
-// The same from a text; `where` begins the error texts.
-Record parse_record(const std::string& text, const std::string& where);
+// The same from the JSON of a file; `where` begins the error texts.
+Record record_from(const nlohmann::ordered_json& document, const std::string& where);
 
 }  // namespace cscd::bench

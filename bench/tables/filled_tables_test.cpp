@@ -155,14 +155,14 @@ TEST(FilledTables, ShippedDefinitionsCoverThePublishedFigures) {
 TEST(Record, SurvivesBeingWrittenAndRead) {
   const Record record = sample_record();
   const std::string text = json_text(to_json(record));
-  EXPECT_EQ(json_text(to_json(parse_record(text, "test"))), text);
+  EXPECT_EQ(json_text(to_json(record_from(nlohmann::ordered_json::parse(text), "test"))), text);
 }
 
 TEST(Record, CallsAFileByAPlainNameBesideItsPath) {
   Record record = sample_record();
   record.scene.name = "hand_1";
   record.scene.path = "/models/hand 1.glb";
-  const Record read = parse_record(to_json(record).dump(), "test");
+  const Record read = record_from(to_json(record), "test");
   EXPECT_EQ(read.scene.name, "hand_1");
   EXPECT_EQ(read.scene.path, "/models/hand 1.glb");
   EXPECT_EQ(schema_violation(to_json(record), "run.schema.json"), "");
@@ -208,7 +208,7 @@ TEST(Schema, HoldsForWhatIsWritten) {
 TEST(Record, RefusesWhatIsNotWhole) {
   const nlohmann::ordered_json whole = to_json(sample_record());
   const auto refusal = [](const nlohmann::ordered_json& document) -> std::string {
-    return test::refusal([&] { parse_record(document.dump(), "r.json"); });
+    return test::refusal([&] { record_from(document, "r.json"); });
   };
   EXPECT_EQ(refusal(whole), "");
   nlohmann::ordered_json other = whole, short_counts = whole, short_times = whole, keyless = whole;

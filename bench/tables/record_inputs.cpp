@@ -14,12 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The schema that a file names; empty for JSON that names none. Throws InputError if it is no JSON.
-std::string schema_of(const fs::path& path) {
-  const nlohmann::json document = nlohmann::json::parse(record_text(path), nullptr, false);
-  if (document.is_discarded())
-    throw InputError("record " + path.string() + ": is no record; name what cscd run wrote");
-  const auto schema = document.is_object() ? document.value("schema", nlohmann::json()) : nlohmann::json();
+// The schema that JSON names; empty where it names none.
+std::string schema_of(const nlohmann::ordered_json& document) {
+  const auto schema =
+      document.is_object() ? document.value("schema", nlohmann::ordered_json()) : nlohmann::ordered_json();
   return schema.is_string() ? schema.get<std::string>() : "";
 }
 
@@ -42,11 +40,12 @@ RecordFiles record_files(const std::vector<std::string>& named, const std::vecto
   RecordFiles files;
   std::string left_out;  // said only where something is left
   const auto add = [&](const fs::path& file, bool named_itself) {
-    const std::string schema = schema_of(file);
+    nlohmann::ordered_json document = read_document(file);
+    const std::string schema = schema_of(document);
     const auto kind = std::ranges::find_if(
         wanted, [&](const std::string& one) { return schema.starts_with("cscd." + one + "/"); });
     if (kind != wanted.end()) {
-      files[*kind].push_back(file);
+      files[*kind].push_back({file, std::move(document)});
     } else if (named_itself) {
       if (!schema.starts_with("cscd."))
         throw InputError("record " + file.string() + ": is no record; name what cscd run wrote");
@@ -68,29 +67,30 @@ RecordFiles record_files(const std::vector<std::string>& named, const std::vecto
   return files;
 }
 
-std::vector<Record> read_records(std::vector<fs::path>& paths) {
-  std::vector<std::pair<Record, fs::path>> read;
-  for (const fs::path& path : paths) {
-    Record record = read_record(path);
+std::vector<Record> read_records(std::vector<RecordFile>& files) {
+  std::vector<std::pair<Record, RecordFile>> read;
+  for (RecordFile& file : files) {
+    const fs::path& path = file.path;
+    Record record = record_from(file.document, path.string());
     if (!record.verification.ok())
       throw InputError("record " + path.string() +
                        ": its verification failed, so it holds no times; mend the strategy and "
                        "run again");
-    for (const auto& [other, other_path] : read)
+    for (const auto& [other, other_file] : read)
       if (other.scene.name == record.scene.name && other.pipeline == record.pipeline)
         throw InputError("record " + path.string() + ": a second record of scene " + record.scene.name +
                          " in the pipeline " + std::string(to_string(record.pipeline)) +
                          "; give one a scene and pipeline");
-    read.emplace_back(std::move(record), path);
+    read.emplace_back(std::move(record), std::move(file));
   }
   std::ranges::stable_sort(read, {}, [](const auto& one) {
     return std::pair(place_of(one.first.scene.name), one.first.pipeline == Pipeline::published);
   });
   std::vector<Record> records;
-  paths.clear();
-  for (auto& [record, path] : read) {
+  files.clear();
+  for (auto& [record, file] : read) {
     records.push_back(std::move(record));
-    paths.push_back(std::move(path));
+    files.push_back(std::move(file));
   }
   return records;
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -9,8 +10,13 @@
 
 namespace cscd::bench {
 
-// Files that hold records, by what their schema is of: "run" for "cscd.run/2".
-using RecordFiles = std::map<std::string, std::vector<std::filesystem::path>>;
+// A file that holds a record, and the JSON in it.
+struct RecordFile {
+  std::filesystem::path path;
+  nlohmann::ordered_json document;
+};
+// Such files by what their schema is of: "run" for "cscd.run/2".
+using RecordFiles = std::map<std::string, std::vector<RecordFile>>;
 
 // Sorts files and the .json and .json.gz files of folders by their schema. `wanted` is what the command reads
 // records of, in any version: an outdated one is refused where it is read, and says why. A file of another
@@ -21,10 +27,10 @@ using RecordFiles = std::map<std::string, std::vector<std::filesystem::path>>;
 RecordFiles record_files(const std::vector<std::string>& named, const std::vector<std::string>& wanted,
                          bool any = false);
 
-// Reads records of different scenes whose verifications passed: those of the paper's scenes in the paper's
-// order, those of their variants with contacts, then others in the given order, each in the pipeline `today`
-// first. Leaves the paths in the order of the records. Throws InputError for a failed verification, and for
-// two records of a scene in one pipeline.
-std::vector<Record> read_records(std::vector<std::filesystem::path>& paths);
+// Makes records of files: those of different scenes whose verifications passed: those of the paper's scenes
+// in the paper's order, those of their variants with contacts, then others in the given order, each in the
+// pipeline `today` first. Leaves the files in the order of the records. Throws InputError for a failed
+// verification, and for two records of a scene in one pipeline.
+std::vector<Record> read_records(std::vector<RecordFile>& files);
 
 }  // namespace cscd::bench

@@ -39,13 +39,14 @@ struct ReportOptions {
   bool views = false, force = false;
 };
 
-// The only record of a study; an empty path where none was named.
-std::filesystem::path only_record(const RecordFiles& files, const std::string& study) {
+// The only record of a study; null where none was named.
+const RecordFile* only_record(const RecordFiles& files, const std::string& study) {
   const auto found = files.find(study);
-  if (found == files.end()) return {};
+  if (found == files.end()) return nullptr;
   if (found->second.size() > 1)
-    throw InputError("record " + found->second[1].string() + ": a second record of this study; give one");
-  return found->second.front();
+    throw InputError("record " + found->second[1].path.string() +
+                     ": a second record of this study; give one");
+  return &found->second.front();
 }
 
 // Of a stage, the mean over the timed intervals, and of the repetitions the median.
@@ -72,16 +73,15 @@ json strategy_of(const Record& record, const StrategyRecord& strategy) {
 
 // What the page says of the record of a study, where there is one: its environment, the command that made
 // it, and its points.
-json study_json(const std::filesystem::path& path, const char* schema_file,
-                json (*points)(const json& record), const std::function<std::string(std::string)>& link) {
-  if (path.empty()) return nullptr;
-  const json record = json::parse(record_text(path));
-  if (const std::string violation = schema_violation(record, schema_file); !violation.empty())
-    throw InputError("record " + path.string() + ": does not follow its schema at " + violation);
-  return {{"file", link(path)},
-          {"command", record.at("command")},
-          {"environment", record.at("environment")},
-          {"data", points(record)}};
+json study_json(const RecordFile* file, const char* schema_file, json (*points)(const json& record),
+                const std::function<std::string(std::string)>& link) {
+  if (file == nullptr) return nullptr;
+  if (const std::string violation = schema_violation(file->document, schema_file); !violation.empty())
+    throw InputError("record " + file->path.string() + ": does not follow its schema at " + violation);
+  return {{"file", link(file->path)},
+          {"command", file->document.at("command")},
+          {"environment", file->document.at("environment")},
+          {"data", points(file->document)}};
 }
 
 // Writes a page of the viewer beside the report for every scene of the records. Returns the pages by scene.
@@ -117,7 +117,7 @@ json record_json(const Record& record, const std::string& file) {
 
 // What the page shows, with links from its folder.
 json document_of(const ReportOptions& options, const RecordFiles& files, const std::vector<Record>& records,
-                 const std::vector<std::filesystem::path>& runs) {
+                 const std::vector<RecordFile>& runs) {
   const auto link = [&](const std::string& path) {
     std::error_code error;
     const std::filesystem::path file = std::filesystem::relative(path, options.folder, error);
@@ -125,7 +125,8 @@ json document_of(const ReportOptions& options, const RecordFiles& files, const s
   };
   json rows = json::array(), history, looks = data_json("looks.json");
   looks.erase("comment");
-  for (std::size_t r = 0; r < records.size(); ++r) rows.push_back(record_json(records[r], link(runs[r])));
+  for (std::size_t r = 0; r < records.size(); ++r)
+    rows.push_back(record_json(records[r], link(runs[r].path)));
   std::string command = "cscd report";
   for (const std::string& path : options.records)
     command += " " + std::filesystem::path(path + "/").parent_path().filename().string();
@@ -159,9 +160,8 @@ void report(const ReportOptions& options) {
   if (!is_page && options.json.empty())
     throw InputError("--out or --json: one of them has to say where the report goes");
   if (is_page) require_viewer();
-  const RecordFiles files = record_files(options.records, {"run", "accuracy", "scale"}, !is_page);
-  std::vector<std::filesystem::path> runs =
-      files.contains("run") ? files.at("run") : std::vector<std::filesystem::path>();
+  RecordFiles files = record_files(options.records, {"run", "accuracy", "scale"}, !is_page);
+  std::vector<RecordFile> runs = std::move(files["run"]);
   const std::vector<Record> records = read_records(runs);
   OutputFile document(options.json, options.force);
   std::optional<OutputFile> output;

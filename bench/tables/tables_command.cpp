@@ -32,7 +32,7 @@ std::string page_of(const TableOptions& options) {
 }
 
 void tables(const TableOptions& options) {
-  std::vector<fs::path> files = record_files(options.records, {"run"}).at("run");
+  std::vector<RecordFile> files = std::move(record_files(options.records, {"run"}).at("run"));
   const std::vector<Record> records = read_records(files);
   const std::vector<FilledTable> made = filled_tables(records);
   const std::vector<ShapedTable> shaped = shaped_tables(made, records, options.intervals);

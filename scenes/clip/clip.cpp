@@ -61,10 +61,13 @@ ClipInterval Clip::interval(std::size_t i) const {
   return interval;
 }
 
+std::optional<Rig> rig_of(const ClipHeader& header, const FrameView& first) {
+  if (header.bone_parent.empty()) return std::nullopt;
+  return Rig{header.bone_parent, {first.bones.begin(), first.bones.end()}};
+}
+
 std::optional<Rig> rig_of(ClipSource& source) {
-  if (source.header().bone_parent.empty()) return std::nullopt;
-  const std::span<const Bone> reference = source.load_frame(0).bones;
-  return Rig{source.header().bone_parent, {reference.begin(), reference.end()}};
+  return rig_of(source.header(), source.load_frame(0));
 }
 
 void copy_frames(ClipSource& source, FrameSink& sink, const std::function<void(std::size_t)>& progress) {

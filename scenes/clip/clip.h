@@ -96,8 +96,9 @@ class Clip final : public ClipSource, public FrameSink {
 void check_frame(const ClipHeader& header, std::size_t index, const FrameView& frame,
                  const FrameView* predicted);
 
-// The skeleton in the pose of frame 0, or nullopt if the source has no bones. Loads frame 0.
-std::optional<Rig> rig_of(ClipSource& source);
+// The skeleton in the pose of frame 0, or nullopt if the source has no bones.
+std::optional<Rig> rig_of(const ClipHeader& header, const FrameView& first);
+std::optional<Rig> rig_of(ClipSource& source);  // loads frame 0
 
 // Hands all frames of a source to a sink with the same header. It holds at most one frame in memory beside
 // the frames of the source. After each frame `progress` is called with the number of frames done.
