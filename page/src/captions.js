@@ -2,7 +2,7 @@
 import { bitOf } from "./data.js";
 import { byId, element } from "./dom.js";
 import { coverOf, mostDepth } from "./painter.js";
-import { BLUE, CROSSED, GREY, ORANGE, PINK, RED, SKIN, SKY, YELLOW } from "./palette.js";
+import { BLUE, CROSSED, GREEN, GREY, ORANGE, PINK, RED, SKIN, SKY, YELLOW } from "./palette.js";
 import { CLOSE, contactWord, isBad, isOpen, lengthText, many, markOf, number, VERDICTS } from "./words.js";
 
 export class Captions {
@@ -13,7 +13,7 @@ export class Captions {
     const verdict = byId("verdict");
     verdict.className = isBad(summary) ? "bad" : isOpen(summary) ? "" : "good";
     verdict.replaceChildren(element("span", `${markOf(summary)} `, "mark"), document.createTextNode(headline), element("span", others.map((sentence) => ` ${sentence}`).join(""), "others"));
-    byId("details").textContent = details;
+    byId("answered").textContent = details;
     document.title = `${this.recording.header.name}: cscd view`;
   }
 
@@ -71,6 +71,7 @@ export class Captions {
       rows.push(element("b", `${many(offset[interval + 1] - offset[interval], "observer")}${strategy.has_patches ? "" : ": points, or bones as segments"}`));
     }
     if (chosen && chosen.event) rows.push(item(BLUE, "lines of the chosen place"));
+    if (chosen?.event?.out) rows.push(item(GREEN, `the deepest point is out where ${chosen.event.name} moves ${lengthText(this.recording, Math.hypot(...chosen.event.out))} this way`));
     if (chosen && chosen.contact !== undefined && mode !== "depth") rows.push(item(BLUE, "first feature, point and normal"), item(PINK, "second feature"));
     byId("legend").replaceChildren(...rows);
   }

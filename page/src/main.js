@@ -1,5 +1,5 @@
 // The viewer: what is shown, and when. Its parts: data (what the page holds), stage and surface (drawing), painter (colours),
-// marker (points and lines), framing (camera), list and timeline, captions (words), controls (buttons and keys).
+// marker (points and lines), framing (camera), pointer (what is under it), list and timeline, captions (words), controls (buttons and keys).
 import { Captions } from "./captions.js";
 import { offerClips } from "./clips.js";
 import { makeControls } from "./controls.js";
@@ -10,6 +10,7 @@ import { MomentList } from "./list.js";
 import { Marker } from "./marker.js";
 import { momentsOf, openingOf, timeOf } from "./moments.js";
 import { modesOf, Painter } from "./painter.js";
+import { Pointer } from "./pointer.js";
 import { Stage } from "./stage.js";
 import { Timeline } from "./timeline.js";
 import { momentOf, momentText } from "./words.js";
@@ -37,6 +38,7 @@ class Viewer {
     this.marker = new Marker(recording, this.stage, this.painter);
     this.framing = new Framing(recording, this.stage, this.marker);
     this.captions = new Captions(recording);
+    this.pointer = new Pointer(recording, this.stage, this.painter, byId("pointed"), () => ({ interval: this.interval(), position: this.position }));
     this.list = new MomentList(recording, byId("list"), byId("list-title"), (moment) => this.select(moment, true));
     this.timeline = new Timeline(byId("timeline"), recording, (position) => this.seek(position));
     makeControls(this);

@@ -49,7 +49,7 @@ export class Marker {
       if (strategy.contact_kind[c] === 1) edge(out, ...(second ? [v[2], v[3]] : [v[0], v[1]]));
       else if (second) for (const [a, b] of [[1, 2], [2, 3], [3, 1]]) edge(out, v[a], v[b]);
     };
-    const points = [], weights = [], others = [], first = [], second = [], normal = [], at = [];
+    const points = [], weights = [], others = [], first = [], second = [], normal = [], at = [], way = this.wayOut(chosen);
     const addNormal = (c, share) => {
       const p = this.contactPoint(strategy, interval, c), n = strategy.contact_normal.subarray(3 * c, 3 * c + 3);
       const length = (share * this.stage.whole.radius) / 127;
@@ -75,7 +75,18 @@ export class Marker {
     const isChosen = (event) => Boolean(chosen && chosen.event && chosen.event.number === event);
     const crossings = this.curves(interval, (event) => !isChosen(event)), crossingGlow = this.curves(interval, () => true);
     first.push(...this.curves(interval, isChosen));
-    for (const [name, numbers] of Object.entries({ others, first, second, normals: normal, crossings, crossingGlow })) marks.setLines(name, numbers);
+    for (const [name, numbers] of Object.entries({ others, first, second, normals: normal, crossings, crossingGlow, way, wayGlow: way })) marks.setLines(name, numbers);
+  }
+
+  // An arrow from the deepest point of a chosen event to the nearest place outside; empty where none is known.
+  wayOut(chosen) {
+    if (!chosen?.event?.out) return [];
+    const from = this.pointOf(null, chosen), to = new THREE.Vector3(...chosen.event.point.map((x, axis) => this.recording.toView(x + chosen.event.out[axis], axis)));
+    const along = to.clone().sub(from), length = along.length(), segments = [...from.toArray(), ...to.toArray()];
+    const aside = new THREE.Vector3().crossVectors(along, Math.abs(along.x) < 0.5 * length ? new THREE.Vector3(1, 0, 0) : new THREE.Vector3(0, 1, 0)).setLength(0.15 * length);
+    const back = from.clone().lerp(to, 0.7), across = new THREE.Vector3().crossVectors(along, aside).setLength(0.15 * length);
+    for (const step of [aside, across]) for (const sign of [-1, 1]) segments.push(...to.toArray(), ...back.clone().addScaledVector(step, sign).toArray());
+    return segments;
   }
 
   // The segments of the curves in which the surface crosses itself at the start of an interval, of the events that are wanted.

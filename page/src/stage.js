@@ -5,7 +5,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
-import { BLUE, PINK, RED, YELLOW } from "./palette.js";
+import { BLUE, GREEN, PINK, RED, YELLOW } from "./palette.js";
 import { Surface } from "./surface.js";
 
 THREE.ColorManagement.enabled = false;  // colours are given as the screen shows them
@@ -93,11 +93,13 @@ export class Marks {
     this.second = lines(PINK, 4);
     this.crossings = lines(RED, 4);
     this.crossingGlow = lines("#5a1400", 7, 0.55);
+    this.wayGlow = lines("#ffffff", 7, 0.8);
+    this.way = lines(GREEN, 4);
     this.observers = dots(BLUE, 12);
     this.observerEdges = lines("#ffffff", 7, 0.8);
     this.observerSegments = lines("#ffffff", 3.5);
     this.observerSegments.material.vertexColors = true;
-    this.group.add(this.observerEdges, this.observerSegments, this.observers, this.crossingGlow, this.crossings, this.others, this.second, this.first, this.normals, this.contacts, this.chosen);
+    this.group.add(this.observerEdges, this.observerSegments, this.observers, this.crossingGlow, this.crossings, this.others, this.second, this.first, this.normals, this.contacts, this.chosen, this.wayGlow, this.way);
     // The renderer would sort what is transparent by how far away its middle is.
     this.group.children.forEach((mark, i) => { mark.renderOrder += (i + 1) / 100; });
   }

@@ -1,7 +1,8 @@
-// The bar under the slider: one column for each interval, as high as there are contacts, with the worst moments marked.
+// The bar under the slider: one column for each interval, as high as there are contacts (on a logarithmic scale), with the worst
+// moments marked, and a line for the depth.
 import { truthsOf } from "./moments.js";
 import { ORANGE, PINK, RED, SKY, YELLOW } from "./palette.js";
-import { CLOSE, momentOf } from "./words.js";
+import { CLOSE, lengthText, many, momentOf } from "./words.js";
 
 export class Timeline {
   constructor(canvas, recording, seek) {
@@ -43,11 +44,23 @@ export class Timeline {
     for (const { first, depths } of events) depths.forEach((d, i) => { depth[first + i] = Math.max(depth[first + i], d); });
     const most = depth.reduce((a, b) => Math.max(a, b), 0);
     if (most === 0) return;
+    this.label(context, lengthText(this.recording, most) + " deep", 0, top, colour);
     context.strokeStyle = colour;
     context.lineWidth = 1.5;
     context.beginPath();
     depth.forEach((d, i) => context.lineTo(x(i), bottom - (d / most) * (bottom - top)));
     context.stroke();
+  }
+
+  // What the top of the columns or of the line stands for, in whichever upper corner: `side` is 0 on the left, 1 on the right.
+  label(context, text, side, top, colour) {
+    const { width } = this.canvas.getBoundingClientRect(), long = context.measureText(text).width;
+    context.globalAlpha = 0.8;
+    context.fillStyle = getComputedStyle(document.documentElement).getPropertyValue("--panel").trim();
+    context.fillRect(side * (width - long - 6), top - 2, long + 6, 13);
+    context.globalAlpha = 1;
+    context.fillStyle = colour;
+    context.fillText(text, side * (width - long - 6) + 3, top + 8);
   }
 
   labelOf(position) {
@@ -82,8 +95,11 @@ export class Timeline {
     }
     context.fillStyle = PINK;
     for (const { interval, truth } of truthsOf(recording)) context.fillRect(x(interval + truth.at) - 2, top, 4, bottom - top);
-    this.drawDepth(context, x, top, bottom, colour("--text"));
     context.font = "11px system-ui, sans-serif";
+    const count = strategy.verdict.reduce((a, _, i) => Math.max(a, strategy.contacts[i] + strategy.start_pairs[i]), 0);
+    const crosses = strategy.start_pairs.some((pairs) => pairs > 0);
+    if (count > 0) this.label(context, many(count, strategy.close ? "close pair" : "contact") + (crosses ? " and crossings" : ""), 1, top, colour("--soft"));
+    this.drawDepth(context, x, top, bottom, colour("--text"));
     context.fillStyle = colour("--text");
     for (const i of Timeline.worst(strategy)) {
       const at = x(i + 0.5);

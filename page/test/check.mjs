@@ -65,6 +65,9 @@ try {
     require(said.includes(opening.text) && said.indexOf(opening.text) < said.indexOf(" itself "), `the verdict does not begin with the worst: ${said}`);
   }
 
+  const way = await page.evaluate(() => { const { chosen, stage } = window.cscd; return chosen?.event && { known: Boolean(chosen.event.out), drawn: stage.looks[0].marks.way.visible }; });
+  if (way) require(way.known === way.drawn, way.known ? "no arrow shows the way out" : "an arrow shows a way out that is not known");
+
   // A page without contact shows the surface of every frame, and its camera stays.
   if (await page.evaluate(() => window.cscd.moments.length === 0)) {
     const outside = await page.evaluate(() => {
@@ -94,6 +97,23 @@ try {
   const first = await look();
   require(new Set(first).size > 20, "the canvas is empty");
   require(different(first, await look()) === 0, "one view gives two pictures");
+
+  // Whatever is under the pointer has a name: here the triangle whose middle is nearest to the camera.
+  const front = await page.evaluate(() => {
+    const { stage, recording } = window.cscd, { corners, place, texts } = recording, { camera, canvas, surface } = stage;
+    const point = camera.position.clone(), middle = camera.position.clone();
+    let nearest = Infinity, found = null;
+    for (let t = 0; 3 * t < corners.length; ++t) {
+      middle.set(0, 0, 0);
+      for (let k = 0; k < 3; ++k) middle.addScaledVector(surface.point(corners[3 * t + k], point), 1 / 3);
+      const far = middle.distanceTo(camera.position), { x, y } = middle.project(camera);
+      if (far < nearest && Math.abs(x) < 0.5 && Math.abs(y) < 0.3) [nearest, found] = [far, { x: ((x + 1) / 2) * canvas.clientWidth, y: ((1 - y) / 2) * canvas.clientHeight, name: texts[place[t]] }];
+    }
+    return found;
+  });
+  await page.locator("#canvas").hover({ position: front, force: true });
+  await page.waitForFunction(() => document.getElementById("pointed").textContent !== "");
+  require((await page.textContent("#pointed")).startsWith(front.name), `the pointer names ${await page.textContent("#pointed")} where ${front.name} is nearest`);
 
   // The slider and the keys change the frame.
   const moments = await page.evaluate(() => window.cscd.moments.length);
