@@ -84,8 +84,8 @@ TEST_F(CompareCommand, KeepsAHistoryThatIsNeverRewritten) {
   expect_refused(run("for f in h/*/*.json; do mv $f ${f%/*}/2026-11-24-${f##*-}; done; " + keep),
                  "never rewritten");
   expect_refused(run(keep + " --committed 2026-11-25T12:00:00+00:00"), "unknown option --committed");
-  EXPECT_NE(run("cscd history h").out.find("of a single commit; --all"), std::string::npos);
-  const Ran shown = run("cscd history h --row base --all --json courses.json");
+  EXPECT_NE(run("cscd history h --stage total").out.find("of a single commit; --all"), std::string::npos);
+  const Ran shown = run("cscd history h --row base --stage total --all --json courses.json");
   EXPECT_EQ(shown.status, 0) << shown.errors;
   EXPECT_NE(shown.out.find("small, base, total"), std::string::npos) << shown.out;
   EXPECT_EQ(ordered_json::parse(text("courses.json")).at("courses").size(), 1u);

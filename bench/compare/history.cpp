@@ -8,6 +8,7 @@
 #include <ctime>
 #include <fstream>
 #include <map>
+#include <set>
 #include <span>
 #include <string_view>
 
@@ -18,6 +19,7 @@
 #include "core/base/digest.h"
 #include "core/base/error.h"
 #include "core/base/number_text.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {
@@ -26,6 +28,8 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 constexpr std::string_view kUnknownMark = "?";
+// What speedups are held against: the first of these rows that took turns with the others.
+constexpr std::string_view kOver[] = {"base", "drvbc"};
 
 constexpr const char* kEnvironment[] = {"cpu",    "cores", "instruction_set", "compiler", "build_type",
                                         "kernel", "flags"};
@@ -146,71 +150,143 @@ std::vector<fs::path> entries_in(const fs::path& folder) {
   return files;
 }
 
-// What was measured of a scene. Times of two entries form one course only where this is the same.
+// What was measured of a scene. Speedups of two entries form one course only where this is the same, and
+// times where their rows are the same, too.
 ordered_json measured_of(const ordered_json& scene) {
-  ordered_json rows = ordered_json::array();
-  for (const ordered_json& row : scene.at("rows")) rows.push_back(row.at("name"));
   return {{"digest", scene.at("digest")},
           {"elementary", scene.at("elementary")},
-          {"timed_intervals", scene.at("timed_intervals")},
-          {"rows", std::move(rows)}};
+          {"timed_intervals", scene.at("timed_intervals")}};
 }
 
-void add_entry(const ordered_json& entry, const CourseChoice& choice, std::vector<Course>& courses) {
-  const auto wanted = [](const std::string& one, const std::string& name) {
-    return one.empty() || one == name;
-  };
-  const std::string machine = machine_of(entry);
-  if (!wanted(choice.machine, machine)) return;
-  for (const ordered_json& scene : entry.at("scenes")) {
-    const ordered_json measured = measured_of(scene);
+Estimate estimate_of(const ordered_json& ms) {
+  return {ms.at("median"), ms.at("low"), ms.at("high")};
+}
+
+// The ratio of two medians that were taken in turns, so that each errs by itself.
+Estimate ratio_of(const Estimate& over, const Estimate& under) {
+  const double value = over.value / under.value;
+  const double wide = std::hypot(std::log(over.high / over.low), std::log(under.high / under.low)) / 2;
+  return {value, value * std::exp(-wide), value * std::exp(wide)};
+}
+
+// The row that others are held against; null where there is none with whole queries.
+const ordered_json* row_over(const ordered_json& scene) {
+  for (const std::string_view name : kOver)
     for (const ordered_json& row : scene.at("rows"))
-      for (const auto& [stage, ms] : row.at("ms").items()) {
-        const std::string scene_name = scene.at("name"), row_name = row.at("name");
-        if (!wanted(choice.scene, scene_name) || !wanted(choice.row, row_name) ||
-            !wanted(choice.stage, stage))
-          continue;
-        auto course = std::ranges::find_if(courses, [&, &stage = stage](const Course& c) {
-          return c.machine == machine && c.scene == scene_name && c.row == row_name && c.stage == stage &&
-                 c.measured == measured;
-        });
-        if (course == courses.end()) {
-          courses.push_back({machine, scene_name, row_name, stage, measured, {}, {}});
-          course = courses.end() - 1;
+      if (row.at("name") == name && row.at("ms").contains("total") && row["ms"]["total"].at("low") > 0)
+        return &row;
+  return nullptr;
+}
+
+class CourseMaker {
+ public:
+  explicit CourseMaker(const CourseChoice& choice) : choice_(choice) {}
+  void add(const ordered_json& entry) {
+    const std::string machine = machine_of(entry);
+    if (!is_wanted(choice_.machine, machine)) return;
+    for (const ordered_json& scene : entry.at("scenes")) {
+      ordered_json measured = measured_of(scene), timed = measured;
+      for (const ordered_json& row : scene.at("rows")) timed["rows"].push_back(row.at("name"));
+      const ordered_json* const over = row_over(scene);
+      for (const ordered_json& row : scene.at("rows")) {
+        const Course course{{}, scene.at("name"), row.at("name"), {}, {}, std::move(measured), {}, {}};
+        measured = course.measured;
+        for (const auto& [stage, ms] : row.at("ms").items()) {
+          Course times = course;
+          times.machine = machine, times.stage = stage, times.measured = timed;
+          add(entry, scene, row, std::move(times), estimate_of(ms));
         }
-        course->points.push_back({entry.at("commit"),
-                                  entry.at("committed"),
-                                  {ms.at("median"), ms.at("low"), ms.at("high")},
-                                  row.at("answers"),
-                                  lacking_of(row)});
+        if (over == nullptr || over == &row || !row["ms"].contains("total") ||
+            !(row["ms"]["total"].at("low") > 0))
+          continue;
+        Course speedup = course;
+        speedup.stage = kSpeedupStage, speedup.over = over->at("name");
+        add(entry, scene, row, std::move(speedup),
+            ratio_of(estimate_of((*over)["ms"]["total"]), estimate_of(row["ms"]["total"])));
       }
+    }
   }
+  std::vector<Course> take() { return std::move(courses_); }
+
+ private:
+  static bool is_wanted(const std::string& one, const std::string& name) {
+    return one.empty() || one == name;
+  }
+  // Adds a point to the course that is like this one, or makes it the first of a new course.
+  void add(const ordered_json& entry, const ordered_json& scene, const ordered_json& row, Course like,
+           const Estimate& value) {
+    if (!is_wanted(choice_.scene, like.scene) || !is_wanted(choice_.row, like.row) ||
+        !is_wanted(choice_.stage, like.stage))
+      return;
+    auto course = std::ranges::find_if(courses_, [&](const Course& c) {
+      return c.machine == like.machine && c.scene == like.scene && c.row == like.row &&
+             c.stage == like.stage && c.over == like.over && c.measured == like.measured;
+    });
+    if (course == courses_.end()) course = courses_.insert(courses_.end(), std::move(like));
+    course->points.push_back({entry.at("commit"), entry.at("committed"), machine_of(entry), value,
+                              row.at("answers"), scene.at("counted_intervals"), row.at("counters"),
+                              lacking_of(row)});
+  }
+
+  CourseChoice choice_;
+  std::vector<Course> courses_;
+};
+
+bool is_speedup(const Course& course) {
+  return course.stage == kSpeedupStage;
 }
 
 std::vector<ChangePoint> changes_of(const Course& course) {
   constexpr double kHalfWidth = 1.96;
   std::vector<CoursePoint> points;
   for (const HistoryPoint& point : course.points) {
-    const Estimate& ms = point.ms;
-    if (ms.low <= 0) return {};
-    points.push_back({ms.value, std::log(ms.high / ms.low) / (2 * kHalfWidth)});
+    const Estimate& value = point.value;
+    if (value.low <= 0) return {};
+    points.push_back({value.value, std::log(value.high / value.low) / (2 * kHalfWidth)});
   }
-  return change_points(points, data_json("comparison.json").at("history").at("least_noise"));
+  const ordered_json noise = data_json("comparison.json").at("history");
+  return change_points(points, noise.at(is_speedup(course) ? "least_noise_of_speedups" : "least_noise"));
 }
 
+// `ratio` is that of times.
 std::string step_text(double ratio) {
   return ratio < 1 ? figure_text(1 / ratio) + " times faster" : figure_text(ratio) + " times slower";
+}
+
+std::string step_text(const Course& course, const ChangePoint& change) {
+  return step_text(is_speedup(course) ? 1 / change.ratio : change.ratio);
+}
+
+// How counters differ from those of the commit before, where both counted the same intervals: "bvot +1.2 %".
+std::vector<std::string> counter_changes(const Course& course, std::size_t i) {
+  std::vector<std::string> out;
+  if (!is_speedup(course) || i == 0 || course.points[i - 1].counted != course.points[i].counted) return out;
+  const ordered_json &before = course.points[i - 1].counters, &after = course.points[i].counters;
+  for (const auto& [name, value] : after.items()) {
+    if (!before.contains(name) || before[name] == value) continue;
+    const double from = before[name], to = value;
+    char text[96];
+    if (from > 0)
+      std::snprintf(text, sizeof text, "%s %+.3g %%", name.c_str(), 100 * (to / from - 1));
+    else
+      std::snprintf(text, sizeof text, "%s 0 to %.0f", name.c_str(), to);
+    out.emplace_back(text);
+  }
+  return out;
 }
 
 std::string point_text(const Course& course, std::size_t i) {
   const HistoryPoint& point = course.points[i];
   char text[128];
-  std::snprintf(text, sizeof text, "  %s  %.10s  %10s ms%-1s [%s, %s]", point.committed.substr(0, 16).c_str(),
-                point.commit.c_str(), short_text(point.ms.value).c_str(), mark_of(point).c_str(),
-                short_text(point.ms.low).c_str(), short_text(point.ms.high).c_str());
+  std::snprintf(text, sizeof text, "  %s  %.10s  %10s %s%-1s [%s, %s]", point.committed.substr(0, 16).c_str(),
+                point.commit.c_str(), short_text(point.value.value).c_str(),
+                is_speedup(course) ? "times" : "ms", mark_of(point).c_str(),
+                short_text(point.value.low).c_str(), short_text(point.value.high).c_str());
   std::string out = text;
+  if (is_speedup(course)) out += "  " + point.machine;
   for (const ChangePoint& change : course.changes)
-    if (change.first == i) out += "  <- " + step_text(change.ratio);
+    if (change.first == i) out += "  <- " + step_text(course, change);
+  for (const std::string& change : counter_changes(course, i)) out += "  <- " + change;
   return out + "\n";
 }
 
@@ -344,8 +420,9 @@ std::vector<Course> read_courses(const fs::path& folder, const CourseChoice& cho
   std::ranges::stable_sort(entries, {}, [](const ordered_json& entry) {
     return commit_second(entry.at("committed"));  // texts of two time zones do not sort as their dates do
   });
-  std::vector<Course> courses;
-  for (const ordered_json& entry : entries) add_entry(entry, choice, courses);
+  CourseMaker maker(choice);
+  for (const ordered_json& entry : entries) maker.add(entry);
+  std::vector<Course> courses = maker.take();
   for (Course& course : courses) course.changes = changes_of(course);
   return courses;
 }
@@ -357,7 +434,8 @@ ordered_json courses_json(const std::vector<Course>& courses) {
     ordered_json points = ordered_json::array(), changes = ordered_json::array();
     for (const HistoryPoint& point : course.points) {
       points.push_back({{"commit", point.commit}, {"committed", point.committed}});
-      points.back().update(estimate_json(point.ms));
+      points.back()["machine"] = point.machine;
+      points.back().update(estimate_json(point.value));
       points.back()["mark"] = mark_of(point);
       points.back()["answers"] = point.answers;
       all.push_back(&point);
@@ -369,11 +447,53 @@ ordered_json courses_json(const std::vector<Course>& courses) {
                    {"scene", course.scene},
                    {"row", course.row},
                    {"stage", course.stage},
+                   {"over", course.over},
                    {"measured", course.measured},
                    {"points", std::move(points)},
                    {"changes", std::move(changes)}});
   }
-  return {{"schema", "cscd.courses/2"}, {"note", note_on_marks(all)}, {"courses", std::move(out)}};
+  return {{"schema", "cscd.courses/3"}, {"note", note_on_marks(all)}, {"courses", std::move(out)}};
+}
+
+std::string speedups_text(const std::vector<Course>& courses) {
+  std::map<std::pair<std::string, std::string>, std::vector<const Course*>> rows;
+  std::set<std::string> commits, machines;
+  std::vector<const HistoryPoint*> shown;
+  std::size_t single = 0;
+  for (const Course& course : courses) {
+    if (course.points.size() < 2) {
+      ++single;
+      continue;
+    }
+    rows[{course.row, course.over}].push_back(&course);
+    for (const HistoryPoint& point : course.points)
+      commits.insert(point.commit), machines.insert(point.machine), shown.push_back(&point);
+  }
+  std::string out =
+      "Times faster in one run, at the first commit and at the last: " + many(commits.size(), "commit") +
+      " on " + many(machines.size(), "kind") + " of machine\n";
+  for (const auto& [row, scenes] : rows) {
+    std::vector<std::string> figures;
+    std::map<std::string, std::vector<std::string>> changes;  // by commit
+    for (const Course* course : scenes) {
+      const HistoryPoint &first = course->points.front(), &last = course->points.back();
+      figures.push_back(course->scene + " " + figure_text(first.value.value) + mark_of(first) + " to " +
+                        figure_text(last.value.value) + mark_of(last));
+      for (std::size_t i = 0; i < course->points.size(); ++i) {
+        std::vector<std::string>& at = changes[course->points[i].commit.substr(0, 10)];
+        for (const ChangePoint& change : course->changes)
+          if (change.first == i) at.push_back(course->scene + " " + step_text(*course, change));
+        if (const std::size_t count = counter_changes(*course, i).size(); count > 0)
+          at.push_back(course->scene + " " + many(count, "counter"));
+      }
+    }
+    out += row.first + " over " + row.second + ": " + joined(figures) + "\n";
+    for (const auto& [commit, what] : changes)
+      if (!what.empty()) out += "  from " + commit + " on: " + joined(what) + "\n";
+  }
+  out += note_on_marks(shown);
+  if (single > 0) out += "left out: " + many(single, "course") + " of a single commit; --all shows them\n";
+  return out;
 }
 
 std::string courses_text(const std::vector<Course>& courses, bool every_point, bool with_single_commits) {
@@ -385,10 +505,12 @@ std::string courses_text(const std::vector<Course>& courses, bool every_point, b
       ++single;
       continue;
     }
-    out += course.scene + ", " + course.row + ", " + course.stage + " on " + course.machine + ", " +
-           std::to_string(course.measured.at("timed_intervals").size()) + " intervals, " +
-           std::to_string(course.measured.at("rows").size()) +
-           " rows in turns: " + many(course.points.size(), "commit") + ", " +
+    out += course.scene + ", " + course.row +
+           (is_speedup(course) ? ", times faster than " + course.over
+                               : ", " + course.stage + " on " + course.machine + ", " +
+                                     std::to_string(course.measured.at("rows").size()) + " rows in turns") +
+           ", " + std::to_string(course.measured.at("timed_intervals").size()) +
+           " intervals: " + many(course.points.size(), "commit") + ", " +
            many(course.changes.size(), "change") + "\n";
     for (std::size_t i = 0; i < course.points.size(); ++i) {
       const bool is_change =

@@ -1,4 +1,5 @@
 #include <CLI/App.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -6,14 +7,16 @@
 #include "bench/compare/history.h"
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"
+#include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 
 namespace cscd::bench {
 namespace {
 
 struct HistoryOptions {
   std::string folder = "results/history", records, json;
-  CourseChoice choice{"", "", "", "total"};
+  CourseChoice choice{"", "", "", std::string(kSpeedupStage)};
   bool all = false, force = false;
 };
 
@@ -34,12 +37,22 @@ void keep_entry(const HistoryOptions& options) {
 
 void history(const HistoryOptions& options) {
   if (!options.records.empty()) return keep_entry(options);
-  const std::vector<Course> courses = read_courses(options.folder, options.choice);
+  std::vector<Course> courses = read_courses(options.folder, options.choice);
   if (courses.empty())
     throw InputError("no entry of " + options.folder + " has such a row; see cscd history");
-  if (!options.json.empty()) OutputFile(options.json, options.force).commit(json_text(courses_json(courses)));
   const bool chosen = !options.choice.row.empty() || !options.choice.scene.empty();
-  std::fputs(courses_text(courses, chosen, options.all).c_str(), stdout);
+  // Rows of the groups, which vary one thing or another, are for whoever asks for them.
+  const auto is_variant = [](const Course& course) {
+    const auto rows = strategies_in("");
+    return std::ranges::none_of(rows, [&](const Strategy* row) { return row->name == course.row; });
+  };
+  const bool in_short = !chosen && !options.all && options.choice.stage == kSpeedupStage;
+  const std::size_t variants = in_short ? std::erase_if(courses, is_variant) : 0;
+  if (!options.json.empty()) OutputFile(options.json, options.force).commit(json_text(courses_json(courses)));
+  std::string text = in_short ? speedups_text(courses) : courses_text(courses, chosen, options.all);
+  if (variants > 0)
+    text += "left out: " + many(variants, "course") + " of variants; --row names one, --all shows all\n";
+  std::fputs(text.c_str(), stdout);
 }
 
 }  // namespace
@@ -48,20 +61,22 @@ void add_history(CLI::App& app) {
   auto options = std::make_shared<HistoryOptions>();
   CLI::App* command = app.add_subcommand(
       "history",
-      "Show what each row took, commit by commit, and where its level changed.\n\n"
-      "  cscd history                                        the changes of every row of several commits\n"
+      "Show how fast each row was, commit by commit, and where that changed.\n\n"
+      "  cscd history                                        the speedup of every row, and its changes\n"
       "  cscd history --scene hand --row drvbc_fast          every commit of this row\n"
+      "  cscd history --stage total                          what a query took, on each kind of machine\n"
       "  cscd history --keep FOLDER                          add an entry of the records in FOLDER\n\n"
       "An entry is one small JSON file a commit and kind of machine, and is never rewritten. A change of\n"
-      "level is a commit from which on a row takes another time. Such commits are found exactly, as the\n"
-      "segments that fit the logarithms of the times best when each of them costs a fixed amount (optimal\n"
-      "partitioning).");
+      "level is a commit from which on a row is faster or slower. Such commits are found exactly, as the\n"
+      "segments that fit the logarithms best when each of them costs a fixed amount (optimal partitioning).\n"
+      "A speedup is a ratio within one run, over base or else drvbc, so it goes on from machine to machine;\n"
+      "times are those of one kind of machine.");
   command->add_option("folder", options->folder, "the folder of the entries")->capture_default_str();
   command->add_option("--machine", options->choice.machine, "of this kind of machine alone: a folder's name");
   command->add_option("--scene", options->choice.scene, "of this scene alone");
   command->add_option("--row", options->choice.row, "of this row alone");
-  command->add_option("--stage", options->choice.stage, "of this stage")
-      ->type_name("TEXT:{total,refit,rv_update,traversal,elementary,embedding,start,preparation}")
+  command->add_option("--stage", options->choice.stage, "of this stage of a query")
+      ->type_name("TEXT:{speedup,total,refit,rv_update,traversal,elementary,embedding,start,preparation}")
       ->capture_default_str();
   command->add_flag("--all", options->all, "show courses of a single commit too");
   command->add_option("--keep", options->records,

@@ -180,5 +180,39 @@ TEST(History, FindsTheCommitThatChangedARow) {
   EXPECT_THROW(read_courses(folder, {}), InputError);
 }
 
+// A speedup is a ratio within one run: machines that differ by a factor of two do not hide a loss of 3 %.
+TEST(History, FindsALossOfSpeedupOverMachines) {
+  const cscd::test::Folder scratch;
+  for (int i = 0; i < 8; ++i) {
+    ordered_json entry = entry_of(std::string(16, static_cast<char>('1' + i)),
+                                  "2026-11-1" + std::to_string(i) + "T10:00:00+00:00", i % 2 == 0 ? 1 : 2);
+    entry["environment"]["cpu"] = i % 2 == 0 ? "a machine" : "another machine";
+    ordered_json& rows = entry["scenes"][0]["rows"];
+    rows[0]["name"] = "base";
+    const double factor = (i >= 5 ? 1.03 : 1) * (1 + 0.002 * (i % 3));  // and what repetitions differ by
+    for (auto& [what, ms] : rows[1]["ms"]["total"].items()) ms = 0.1 * factor * ms.get<double>();
+    if (i >= 6) rows[1]["counters"]["bvot"] = 1001;
+    std::ofstream(scratch.path / (std::to_string(i) + ".json")) << json_text(entry);
+  }
+  const CourseChoice choice{"", "hand", "swift", std::string(kSpeedupStage)};
+  const std::vector<Course> courses = read_courses(scratch.path, choice);
+  ASSERT_EQ(courses.size(), 1u);
+  EXPECT_EQ(courses[0].over, "base");
+  EXPECT_EQ(courses[0].machine, "");
+  ASSERT_EQ(courses[0].points.size(), 8u);
+  EXPECT_NEAR(courses[0].points[0].value.value, 10, 1e-9);
+  ASSERT_EQ(courses[0].changes.size(), 1u);
+  EXPECT_EQ(courses[0].points[courses[0].changes[0].first].commit, "6666666666666666");
+  const std::string text = speedups_text(courses);
+  EXPECT_TRUE(says(text, "8 commits on 2 kinds of machine\n")) << text;
+  EXPECT_TRUE(says(text, "swift over base: hand 10* to 9.")) << text;
+  EXPECT_TRUE(says(text, "\n  from 6666666666 on: hand 1.03 times slower\n")) << text;
+  EXPECT_TRUE(says(text, "\n  from 7777777777 on: hand 1 counter\n")) << text;
+  EXPECT_TRUE(says(courses_text(courses, true, false), "  <- bvot +0.1 %"));
+  EXPECT_TRUE(says(courses_text(courses, true, false), " times* [")) << courses_text(courses, true, false);
+  // Times are those of one machine.
+  EXPECT_EQ(read_courses(scratch.path, {"", "hand", "swift", "total"}).size(), 2u);
+}
+
 }  // namespace
 }  // namespace cscd::bench

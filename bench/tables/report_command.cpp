@@ -132,7 +132,7 @@ json document_of(const ReportOptions& options, const RecordFiles& files, const s
     command += " " + std::filesystem::path(path + "/").parent_path().filename().string();
   if (!options.history.empty()) {
     command += " --history " + std::filesystem::path(options.history).lexically_normal().filename().string();
-    history = courses_json(read_courses(options.history, {"", "", "", "total"}));
+    history = courses_json(read_courses(options.history, {"", "", "", std::string(kSpeedupStage)}));
     history["folder"] = link(options.history);
   }
   if (options.views) command += " --view";

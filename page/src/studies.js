@@ -99,11 +99,10 @@ export function showGrowth(study, { looks, tables }) {
   choose();
 }
 
-// A scene, a machine, and what was timed of the scene. Only times of one measurement can be held against each other.
-const measurementOf = ({ scene, machine, measured }) =>
-  `${scene} on ${machine}: ${measured.timed_intervals.length} intervals, ${measured.rows.length} rows in turns`;
+// A scene, and what was timed of it. Only speedups of one measurement can be held against each other.
+const measurementOf = ({ scene, over, measured }) => `${scene}, over ${over}: ${measured.timed_intervals.length} intervals`;
 
-// What a row took at a commit, with the mark that says whether it answered everything.
+// How many times faster a row was at a commit, with the mark that says whether it answered everything.
 const marked = ({ median, mark }) => number(median) + mark;
 
 export function showHistory(history) {
@@ -121,13 +120,13 @@ export function showHistory(history) {
       data: aligned(shown.map((course) => course.points.map((point) => ({ x: order.indexOf(point.commit), y: point.median })))),
       series: shown.map((course) => ({ label: course.row + distinct(course.points.map((point) => point.mark)).join(""), stroke: colourOf(course.row), dash: dashOf(course.row), points: { show: true, size: 6 }, ...SPAN })),
       x: { label: "commit", scale: LINEAR, range: [-0.4, order.length - 0.6], name: nameOf, values: (_, ticks) => ticks.map((tick) => (Number.isInteger(tick) ? nameOf(tick) : "")) },
-      y: { label: "ms an interval", scale: LOG },
+      y: { label: "times faster", scale: LOG },
       hooks: { draw: [(plot) => shown.forEach((course) => course.changes.forEach((change) => markChange(plot, order.indexOf(change.commit), course.points[change.first].median, percent(change.ratio), colourOf(course.row))))] },
     };
   });
   const list = () => {
     const rows = courses().flatMap((course) => course.changes.map((change) => [course.row, change.commit.slice(0, 10), marked(course.points[change.first - 1]), marked(course.points[change.first]), percent(change.ratio)]));
-    byId("history-list").replaceChildren(rows.length > 0 ? tableOf(["row", "first commit of the new level", "ms before", "ms at it", "level"], rows) : element("p", "No change of level was found."), element("p", history.note));
+    byId("history-list").replaceChildren(rows.length > 0 ? tableOf(["row", "first commit of the new level", "times faster before", "at it", "level"], rows) : element("p", "No change of level was found."), element("p", history.note));
   };
   select.addEventListener("change", () => {
     chart.draw();
