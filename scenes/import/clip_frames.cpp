@@ -16,6 +16,9 @@ namespace {
 // A clip ends with a whole frame if its length differs from a whole number of frames by less than this.
 // Times in files are single precision, so their lengths are seldom exact.
 constexpr double kNearFrame = 1e-3;
+// How far rounding to single precision may move two times, the key's and that of the clip's start, as a share
+// of the later one.
+constexpr double kSingle = 0x1p-23;
 // At most this many frames of a clip, and spans between its keys, are looked at to see whether the clip moves
 // the surface.
 constexpr std::size_t kMostLooks = 4096;
@@ -241,6 +244,34 @@ double second_of_frame(std::size_t frame, double seconds, double fps) {
 double frame_number(double seconds, double fps) {
   const double number = seconds * fps, whole = std::round(number);
   return std::abs(number - whole) <= kNearFrame ? whole : number;
+}
+
+void put_jumps_on_frames(Character& character, double fps) {
+  for (Animation& clip : character.animations) {
+    const auto put = [&](auto& keys) {
+      for (std::size_t i = 1; i < keys.size(); ++i) {
+        if (keys[i - 1].next != Between::constant) continue;
+        const double frame = std::round((keys[i].time - clip.start) * fps);
+        if (!(frame >= 0) || !(frame <= clip.seconds * fps + 1)) continue;
+        const double time = clip.start + second_of_frame(static_cast<std::size_t>(frame), clip.seconds, fps);
+        const bool is_between = time > keys[i - 1].time && (i + 1 == keys.size() || time < keys[i + 1].time);
+        if (is_between && std::abs(time - keys[i].time) <= kSingle * std::abs(keys[i].time))
+          keys[i].time = time;
+      }
+    };
+    const auto put_all = [&](auto& layered) {
+      for (Curve& curve : layered.base.axis) put(curve.keys);
+      for (auto& layer : layered.above)
+        for (Curve& curve : layer.values.axis) put(curve.keys);
+    };
+    for (Channel& channel : clip.channels) {
+      put(channel.moves), put(channel.rotations), put(channel.scales);
+      put_all(channel.move_components), put_all(channel.scale_components), put_all(channel.angles.degrees);
+    }
+    for (MorphChannel& morph : clip.morphs)
+      for (Layered<1>& weight : morph.weights) put_all(weight);
+    for (Curve& weight : clip.layer_weights) put(weight.keys);
+  }
 }
 
 Frames plan_frames(const Character& character, const Pose& bound, const std::vector<bool>& used,

@@ -181,10 +181,11 @@ Surface surface_of(const MeshSequence& sequence) {
 
 }  // namespace
 
-ImportReport convert(const Character& character, const ImportOptions& options, const CharacterLimits& limits,
+ImportReport convert(Character character, const ImportOptions& options, const CharacterLimits& limits,
                      const std::filesystem::path& cache, const std::filesystem::path& sources) {
   ImportReport report;
   describe(character, options, report);
+  put_jumps_on_frames(character, report.fps);
   const RawSurface raw = raw_surface(character);
   const ChosenSurface chosen = choose_surface(character, raw, options, report);
   std::vector<bool> used(raw.positions.size(), false);

@@ -13,7 +13,7 @@ namespace cscd::scenes {
 // welded surface, with the bones that move them and the bind pose as the pose at rest. Writes the source
 // map of the surface (scenes/character/source_map.h) to `sources`, and returns the report. Throws
 // InputError, with the counts, where the character gives no such surface or too many frames.
-ImportReport convert(const Character& character, const ImportOptions& options, const CharacterLimits& limits,
+ImportReport convert(Character character, const ImportOptions& options, const CharacterLimits& limits,
                      const std::filesystem::path& cache, const std::filesystem::path& sources);
 
 // Writes a moving surface without bones (scenes/exchange/mesh_sequence.h), or the one in a folder, to `cache`

@@ -320,6 +320,33 @@ TEST_F(Convert, TakesAClipThatMovesForTheShortestTimeBetweenFrames) {
                    "none of its clips moves the surface"));
 }
 
+// A time of single precision may lie behind the frame that it is meant for. Mutation: the frame shows the key
+// before.
+TEST_F(Convert, ShowsAJumpInTheFrameThatItIsMeantFor) {
+  for (const double fps : {24.0, 25.0, 30.0, 60.0}) {
+    const auto second = [&](int frame) { return double(static_cast<float>(frame / fps)); };
+    Character tube = bending_tube();
+    tube.frames_per_second = fps;
+    tube.animations[0].start = second(6);
+    tube.animations[0].seconds = second(35) - second(6);
+    Channel& channel = tube.animations[0].channels[0];
+    channel.rotations.clear();
+    channel.moves.clear();
+    for (int k = 6; k <= 35; ++k) channel.moves.push_back({second(k), Vec3(0, k, 0), Between::constant});
+    const Clip clip = converted(tube);
+    ASSERT_EQ(clip.frame_count(), 30u);
+    const auto moved = [&](std::size_t frame) {
+      double most = 0;
+      for (std::size_t v = 0; v < clip.header().vertex_count; ++v)
+        most = std::max(most, (clip.frame(frame).positions[v] - clip.frame(0).positions[v]).norm());
+      return most;
+    };
+    for (std::size_t i = 1; i < 30; ++i)
+      EXPECT_NEAR(moved(i), static_cast<double>(i) * moved(29) / 29, 1e-9) << fps << " " << i;
+    EXPECT_GT(moved(29), 1);
+  }
+}
+
 TEST_F(Convert, ComparesNamesOfClipsWithoutCaseWhereThatIsUnique) {
   Character tube = bending_tube();
   const Animation bend = tube.animations[0];

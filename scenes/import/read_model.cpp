@@ -99,7 +99,7 @@ class Reader {
     note(morphs_, "blend shapes not applied");
     note(again_, "meshes that several nodes share taken once, as their joints place them");
     note(strangers_, "animation channels name no node of the file and are ignored");
-    note(dropped_keys_, "keys out of order ignored");
+    note(dropped_keys_, "keys ignored that repeat the key before");
     note(many_, "weights not positive or without a bone ignored");
     return std::move(character_);
   }
@@ -225,10 +225,15 @@ class Reader {
     for (unsigned i = 0; i < count; ++i) {
       const double time = from[i].mTime * seconds_per_tick;
       if (!std::isfinite(time)) throw InputError("an animation key's time is not a number; repair it");
-      if (!to.empty() && !(time > to.back().time))
-        ++dropped_keys_;
+      const Value value = convert(from[i].mValue);
+      if (to.empty() || time > to.back().time)
+        to.push_back({time, value});
+      else if (time < to.back().time || !(from[i].mValue == from[i - 1].mValue))
+        throw InputError(
+            "an animation key is not later than the key before, and has another value; sort the "
+            "keys, and export it again");
       else
-        to.push_back({time, convert(from[i].mValue)});
+        ++dropped_keys_;
     }
   }
 

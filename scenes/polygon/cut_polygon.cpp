@@ -98,11 +98,13 @@ Plane plane_of(std::span<const std::int32_t> corners, std::span<const Vec3> posi
   return plane;
 }
 
-// Tells whether a triangle faces the other way than its polygon.
+// Tells whether a triangle faces the other way than its polygon. Of a polygon whose parts turn against each
+// other and are equally large, every triangle with area does.
 bool turned(const std::array<std::int32_t, 3>& t, std::span<const Vec3> positions, const Plane& plane) {
   const Vec3& a = at(positions, t[0]);
   const Vec3 normal = (at(positions, t[1]) - a).cross(at(positions, t[2]) - a);
-  return normal.dot(plane.normal) < -kNoArea * plane.length * plane.length;
+  const double most = kNoArea * plane.length * plane.length;
+  return plane.normal.isZero(0) ? normal.norm() > most : normal.dot(plane.normal) < -most;
 }
 
 Triangles named(std::span<const std::array<std::size_t, 3>> cut, std::span<const std::int32_t> corners) {

@@ -150,8 +150,10 @@ TEST(Polygons, AreCutAlikeInAllSizes) {
 
 TEST(Polygons, ThatOverlapThemselvesAreNamed) {
   const std::vector<Vec3> bow = {{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 2, 0}},
+                          even = {{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}},
+                          eight = {{0, 0, 0}, {2, 2, 0}, {3, 1, 0}, {2, 0, 0}, {0, 2, 0}, {-1, 1, 0}},
                           star = {{0, 10, 0}, {6, -8, 0}, {-9, 3, 0}, {9, 3, 0}, {-6, -8, 0}};
-  for (const std::vector<Vec3>& corners : {bow, star}) {
+  for (const std::vector<Vec3>& corners : {bow, even, eight, star}) {
     std::vector<std::array<std::int32_t, 3>> triangles;
     EXPECT_EQ(cut_polygon(all_of(corners), corners, triangles), PolygonCut::overlapping);
     EXPECT_EQ(triangles.size(), corners.size() - 2);

@@ -291,11 +291,17 @@ TEST(FbxAnimation, RefusesWhatItCannotShow) {
   EXPECT_TRUE(says(refusal_of(sliding({0, 1}, {0, 1}, {kLinear})), "do not fit its 2 keys"));
 }
 
-TEST(FbxAnimation, KeysOutOfOrderAreLeftOutWithANote) {
-  const Character character =
-      read(sliding({0, 0.5, 0.5, 1}, {0, 2, 7, 4}, {kLinear, kLinear, kLinear, kLinear}));
+// Mutation: such a key is left out, and another motion is shown.
+TEST(FbxAnimation, KeysOutOfOrderAreRefused) {
+  const auto four = [](const std::vector<double>& times, const std::vector<double>& values) {
+    return sliding(times, values, {kLinear, kLinear, kLinear, kLinear});
+  };
+  const std::string why = "key 2 (counted from 0) is not later than the key before";
+  EXPECT_TRUE(says(refusal_of(four({0, 0.5, 0.5, 1}, {0, 2, 7, 4})), why));
+  EXPECT_TRUE(says(refusal_of(four({0, 1, 0.5, 2}, {0, 2, 2, 4})), why));
+  const Character character = read(four({0, 0.5, 0.5, 1}, {0, 2, 2, 4}));
   ASSERT_EQ(character.notes.size(), 1u);
-  EXPECT_EQ(character.notes[0], "1 keys out of order ignored");
+  EXPECT_EQ(character.notes[0], "1 keys ignored that repeat the key before");
   EXPECT_NEAR(x_at(character, 0.5), 2, 1e-9);
 }
 

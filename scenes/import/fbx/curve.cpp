@@ -94,6 +94,7 @@ class CurveReader {
     for (std::size_t i = 0; i < ticks.size(); ++i) {
       if (!std::isfinite(numbers[i])) refuse_number(i, "value");
       if (!keys.empty() && ticks[i] <= keys.back().ticks) {
+        if (ticks[i] < keys.back().ticks || numbers[i] != keys.back().value) refuse_time(i);
         ++dropped;
         continue;
       }
@@ -104,6 +105,13 @@ class CurveReader {
       key.attributes = attributes[i];
     }
     return keys;
+  }
+
+  [[noreturn]] void refuse_time(std::size_t key) const {
+    throw InputError(
+        where_ + ": key " + std::to_string(key) +
+        " (counted from 0) is not later than the key before, and has another value; sort the keys, "
+        "and export it again");
   }
 
   [[noreturn]] void refuse_number(std::size_t key, const char* what) const {

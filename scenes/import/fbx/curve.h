@@ -11,7 +11,7 @@ namespace cscd::scenes::fbx {
 // A curve, and what was noticed about it.
 struct ReadCurve {
   Curve curve;
-  std::size_t dropped = 0;    // keys out of order
+  std::size_t dropped = 0;    // keys that repeat the key before
   bool unknown_ends = false;  // goes on beyond its keys in a way that is not known; its values hold instead
 };
 

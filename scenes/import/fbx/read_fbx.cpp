@@ -311,7 +311,7 @@ class Builder {
     note(other_deformers_, "deformers that are neither skins nor blend shapes not applied");
     note(empty_clips_, "clips that animate nothing left out");
     note(objects_.all("Constraint").size(), "constraints not applied");
-    note(clip_left_out_.keys, "keys out of order ignored");
+    note(clip_left_out_.keys, "keys ignored that repeat the key before");
     note(clip_left_out_.ends, "animation curves go on in an unknown way, and hold beyond their keys");
     note(clip_left_out_.layers, "muted animation layers ignored");
     note(skin_left_out_.weights, "weights not positive or without a bone ignored");

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/number_text.h"
+
 namespace cscd::scenes::gltf {
 namespace {
 
@@ -90,6 +92,13 @@ Clips::Sampled Clips::sampled(const tinygltf::Animation& source, int index, cons
   return out;
 }
 
+void Clips::refuse_time(const Sampled& from, std::size_t key) {
+  throw InputError(from.where + ": its key times do not rise: key " + std::to_string(key) +
+                   " (counted from 0) is at " + exact_text(from.times.values[key]) +
+                   " s, and the key before at " + exact_text(from.times.values[key - 1]) +
+                   " s; sort the keys, and export it again");
+}
+
 // Makes the keys of a sampler. `convert` makes a value from the key's only element, or from the element of
 // one morph target.
 template <class Value, class Convert>
@@ -98,8 +107,14 @@ std::vector<Key<Value>> Clips::keys(const Sampled& from, const Convert& convert)
   const bool cubic = from.next == Between::cubic;
   for (std::size_t i = 0; i < from.times.count; ++i) {
     const double time = from.times.values[i];
+    const std::size_t a_key = from.elements * (cubic ? 3 : 1);
     if (!keys.empty() && !(time > keys.back().time)) {
-      ++unordered_;
+      bool is_twice = time == keys.back().time;  // with the values of the key before
+      for (std::size_t k = 0; k < a_key; ++k)
+        is_twice =
+            is_twice && std::ranges::equal(from.values[i * a_key + k], from.values[(i - 1) * a_key + k]);
+      if (!is_twice) refuse_time(from, i);
+      ++twice_set_;
       continue;
     }
     const auto element = [&](std::size_t which) {
@@ -115,16 +130,6 @@ std::vector<Key<Value>> Clips::keys(const Sampled& from, const Convert& convert)
     }
     keys.push_back(key);
   }
-  // A channel that keeps still loses nothing where its keys are at one time.
-  const auto moves = [&] {
-    const std::size_t all = from.times.count * from.elements * (cubic ? 3 : 1),
-                      one = from.elements * (cubic ? 3 : 1);
-    for (std::size_t i = one; i < all; ++i)
-      if (!std::ranges::equal(from.values[i], from.values[i - one])) return true;
-    return false;
-  };
-  if (keys.size() == 1 && from.times.count > 1 && moves())
-    throw InputError(from.where + ": its key times do not rise, as glTF requires; export it again");
   return keys;
 }
 
@@ -208,7 +213,7 @@ std::vector<std::string> Clips::notes() const {
   const auto note = [&](std::size_t count, const char* what) {
     if (count > 0) notes.push_back(std::to_string(count) + " " + what);
   };
-  note(unordered_, "keys out of order ignored");
+  note(twice_set_, "keys ignored that repeat the key before");
   note(twice_, "animation channels ignored: an earlier channel moves the same");
   note(no_targets_, "animation channels move weights of nodes without morph targets and are ignored");
   return notes;

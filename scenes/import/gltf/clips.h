@@ -25,13 +25,14 @@ class Clips {
   void read_weights(const tinygltf::Animation& source, const tinygltf::AnimationChannel& channel, int node,
                     const std::vector<Part>& parts, std::map<int, MorphChannel>& by_part);
   void read_node(const tinygltf::Animation& source, const tinygltf::AnimationChannel& channel, Channel& to);
+  [[noreturn]] static void refuse_time(const Sampled& from, std::size_t key);
   template <class Value, class Convert>
   std::vector<Key<Value>> keys(const Sampled& from, const Convert& convert);
 
   Accessors& accessors_;
   const CharacterLimits& limits_;
   // Counts over all clips read so far.
-  std::size_t keys_ = 0, unordered_ = 0, twice_ = 0, no_targets_ = 0;
+  std::size_t keys_ = 0, twice_set_ = 0, twice_ = 0, no_targets_ = 0;
 };
 
 }  // namespace cscd::scenes::gltf

@@ -296,6 +296,7 @@ void Surfaces::read_influences(Attributes& attributes, Part& part, const std::st
         sum += weight;
       }
     for (std::size_t i = first; i < part.influences.size(); ++i) part.influences[i].weight /= sum;
+    weightless_ += !sets.empty() && first == part.influences.size();
     part.first[v + 1] = part.influences.size();
   }
   influences_ += part.influences.size();
@@ -339,6 +340,7 @@ std::vector<std::string> Surfaces::notes() const {
   note(no_positions_, "primitives without positions left out");
   note(odd_corners_, "corners left over after the last triangle ignored");
   note(negative_, "negative weights ignored");
+  note(weightless_, "vertices of skins have no weight above 0: they follow the node of their mesh");
   return notes;
 }
 

@@ -38,7 +38,7 @@ class Surfaces {
   const CharacterLimits& limits_;
   // Counts over all parts read so far.
   std::size_t parts_ = 0, vertices_ = 0, triangles_ = 0, influences_ = 0, joints_ = 0, displacements_ = 0;
-  std::size_t no_triangles_ = 0, no_positions_ = 0, odd_corners_ = 0, negative_ = 0;
+  std::size_t no_triangles_ = 0, no_positions_ = 0, odd_corners_ = 0, negative_ = 0, weightless_ = 0;
 };
 
 }  // namespace cscd::scenes::gltf
