@@ -237,8 +237,14 @@ std::string only_touching_text(const ClipAnswer& answer) {
   constexpr std::size_t kMost = 3;
   if (answer.input.thickness.length > 0) return {};
   std::map<NamePair, std::size_t> touching;
+  // What crosses in the last pose alone has no start at which it does.
+  const auto crosses = [&](const NamePair& both) {
+    return std::ranges::any_of(answer.events, [&](const OverlapEvent& event) {
+      return event.crosses && (event.names == both || event.names == NamePair{both.second, both.first});
+    });
+  };
   for (const auto& [both, here] : answer.summary.met)
-    if (here.start_pairs == 0 && !answer.only_folds(both)) touching[both] = here.intervals;
+    if (here.start_pairs == 0 && !answer.only_folds(both) && !crosses(both)) touching[both] = here.intervals;
   const auto sorted = most_first(touching);
   std::string out;
   for (std::size_t i = 0; i < std::min(kMost, sorted.size()); ++i)

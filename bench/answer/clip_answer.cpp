@@ -64,6 +64,7 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
 
   const bool meets_at_start = answer.start.total + answer.start_touching.total > 0;
   const ClipMoment moment{answer.index, meets_at_start ? 0 : answer.time().value_or(0)};
+  if (first && !meets_at_start && moment.time > 0) parted_ = true;
   // With a thickness, what touches later is close first.
   const bool is_close_first = !meets_at_start && !answer.touching.empty();
   const IntervalVerdict how = is_close_first ? IntervalVerdict::close : answer.verdict;

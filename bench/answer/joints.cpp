@@ -61,6 +61,7 @@ Joints::Joints(const Input& input, const SurfaceNames& names) {
     joined_.emplace(place[b], place[a]);
   };
   const std::vector<std::set<std::int32_t>> near = bones_within(input.clip->header().bone_parent, 1);
+  if (near.size() == 1) return;  // one node moves the whole surface, and has no joint
   for (const auto& [bone, name] : place)
     if (bone >= 0 && static_cast<std::size_t>(bone) < near.size())
       for (const std::int32_t other : near[static_cast<std::size_t>(bone)])

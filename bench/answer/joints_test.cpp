@@ -29,6 +29,24 @@ TEST(Joints, JoinPartsThatShareAVertex) {
   EXPECT_FALSE(joints.join({"shin", "stone"}));
 }
 
+// Mutation: all that one node moves is one bone, whose pieces fold onto themselves.
+TEST(Joints, OneNodeHasNone) {
+  const test::Shape ball = test::icosphere(1);
+  Input input = input_of(ball, {ball.positions, ball.positions});
+  scenes::ClipHeader header = input.clip->header();
+  header.bone_parent = {BoneId{-1}};
+  auto clip = std::make_unique<scenes::Clip>(header);
+  const Bone still;
+  for (int frame = 0; frame < 2; ++frame) clip->append({ball.positions, std::span(&still, 1)});
+  input.clip = std::move(clip);
+  input.bone_names = {"crate"};
+  input.rig = scenes::rig_of(*input.clip);
+  input.sources.emplace();
+  input.sources->triangle.resize(ball.triangles.size());
+  input.sources->bone.assign(ball.positions.size(), 0);
+  EXPECT_FALSE(Joints(input, SurfaceNames(input)).join({"crate", "crate"}));
+}
+
 // Mutations: the girth is that of the thicker piece; what is not known to be shallow is a fold.
 TEST(Joints, FoldLessThanATenthOfTheGirth) {
   // A long tube of radius 1 and one of radius 2, end to end.

@@ -74,6 +74,13 @@ Up up_of(const scenes::ClipHeader& header) {
   return {header.up, "the file says so"};
 }
 
+// Whether all frames are the first one. Of a clip that moves, the second frame mostly tells.
+bool is_still(scenes::ClipSource& clip, const std::vector<Vec3>& reference) {
+  for (std::size_t frame = 1; frame < clip.frame_count(); ++frame)
+    if (!std::ranges::equal(clip.load_frame(frame).positions, reference)) return false;
+  return true;
+}
+
 }  // namespace
 
 bool is_point_cache(const std::filesystem::path& path) {
@@ -154,6 +161,10 @@ Input open_input(const std::string& name, const ModelOptions& options) {
     const long chosen = input.import->chosen_clip;
     input.is_one_pose = chosen < 0 || input.import->clips[static_cast<std::size_t>(chosen)].frames < 2;
   }
+  // What bones carry may move between the frames, and predicted steps without the frames.
+  const bool is_frames_alone = input.clip->header().bone_parent.empty() && !input.clip->header().predicted;
+  if (is_frames_alone && !options.import.survey)
+    input.is_one_pose = input.is_one_pose || is_still(*input.clip, input.reference);
   input.up = std::move(up);
   return input;
 }

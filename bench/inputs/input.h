@@ -76,7 +76,7 @@ struct Input {
   // How the vertices of a model file move between frames; null where that is not asked for.
   std::shared_ptr<const VertexPaths> motion = nullptr;
   bool clip_was_named = true;                 // else it is the first clip that moves
-  bool is_one_pose = false;                   // of a model file that nothing moves: both frames are this pose
+  bool is_one_pose = false;                   // nothing moves: all frames are this pose
   int threads = 1;                            // for whatever can use them
   std::vector<std::byte> preparation = {};    // of an earlier run; empty for none
   std::vector<std::string> bone_names = {};   // [bones], of a scene or a model file that names them, or none

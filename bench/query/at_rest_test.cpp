@@ -196,6 +196,8 @@ TEST_F(AtRest, TheLastPoseIsLookedAt) {
   EXPECT_EQ(event["deepest"]["time"], 1);
   EXPECT_EQ(status("--fail-deeper-than 0.2"), 3);
   EXPECT_EQ(status("--fail-deeper-than 0.3"), 0);
+  // The two touch before, and cross there: one sentence does not contradict the other.
+  EXPECT_FALSE(has(sentence(found), "only touch")) << sentence(found);
   const json part = answer("f.0.obj --frames 0:1");
   EXPECT_EQ(part["last_pose"]["frame"], 1);
   EXPECT_EQ(part["last_pose"]["pairs_total"], 0);
@@ -229,6 +231,13 @@ TEST_F(AtRest, OnePoseIsAnsweredByItself) {
   const json figure = answer("still.glb");
   EXPECT_EQ(figure["one_pose"], true);
   EXPECT_EQ(figure["summary"]["verdict"], "intersects_at_start") << "its eyes lie in its head";
+
+  // Frames that are all one pose are that pose. Mutation: its crossings are left out.
+  put_frames({0.75, 0.75, 0.75});
+  EXPECT_EQ(answer("f.0.obj")["one_pose"], true);
+  EXPECT_EQ(status("--fail-deeper-than 0.2"), 3);
+  put_frames({0.75, 0.75, 0.76});
+  EXPECT_EQ(answer("f.0.obj")["one_pose"], false);
 
   // A clip of several frames that moves nothing is a pose too.
   scenes::Character kept = scenes::bending_tube();
