@@ -1,15 +1,17 @@
 // Bundles the viewer and the report into one HTML page each, whose content policy allows its own script and style alone, and
-// writes both as a C++ source.
+// writes both as a C++ source. With the package of library/js, writes the page that takes a file instead.
 //
 //   node build.mjs FOLDER-WITH-node_modules OUT.cpp
+//   node build.mjs FOLDER-WITH-node_modules OUT.html PACKAGE
 import { createHash } from "node:crypto";
 import { createRequire } from "node:module";
 import { readFileSync, writeFileSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
+import { deflateSync } from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [packages, out] = process.argv.slice(2);
+const [packages, out, library] = process.argv.slice(2);
 const { build } = createRequire(join(packages, "package.json"))("esbuild");
 
 async function bundle(entry) {
@@ -22,6 +24,10 @@ async function bundle(entry) {
     target: ["chrome110", "firefox115", "safari16.4"],
     nodePaths: [join(packages, "node_modules")],
     legalComments: "none",
+    // Of the library in the worker, which gets its engine from the page.
+    alias: library ? { cscd: join(resolve(library), "cscd.js") } : {},
+    external: ["node:*"],
+    define: { "import.meta.url": "undefined" },
   });
   return made.outputFiles[0].text.trim();
 }
@@ -31,17 +37,18 @@ const digest = (text) => `'sha256-${createHash("sha256").update(text).digest("ba
 const version = (name) => JSON.parse(readFileSync(join(packages, "node_modules", name, "package.json"), "utf8"));
 const licence = (name) => `${name} ${version(name).version} (${version(name).license} licence)`;
 
-// `frames` says which pages the page may show in frames; nothing otherwise.
-async function pageOf(name, entry, library, frames = "") {
+// `allowed` says what the page may do beside running its own script; `held` what it holds in places of its own.
+async function pageOf(name, entry, licensed, { scripts = "", allowed = "", held = {} } = {}) {
   const script = (await bundle(entry)).replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
   const style = await bundle(`${name}.css`);
-  const policy = `default-src 'none'; script-src ${digest(script)}; style-src ${digest(style)}; ${frames}base-uri 'none'; form-action 'none'`;
+  const policy = `default-src 'none'; script-src ${digest(script)}${scripts}; style-src ${digest(style)}; ${allowed}base-uri 'none'; form-action 'none'`;
   const part = (file) => readFileSync(join(here, "src", file), "utf8");
-  return part(`${name}.html`)
+  const whole = Object.entries(held).reduce((text, [place, value]) => text.replace(`{{${place}}}`, () => value), part(`${name}.html`));
+  return whole
     .replace("{{head}}", () => part("head.html").trim())
     .replaceAll("{{name}}", () => name)
     .replace("{{policy}}", () => policy)
-    .replace("{{licences}}", () => licence(library))
+    .replace("{{licences}}", () => licence(licensed))
     .replace("{{style}}", () => style)
     .replace("{{script}}", () => script);
 }
@@ -60,16 +67,29 @@ ${literal(page)};
 }
 `;
 
-writeFileSync(
-  out,
-  `// Made by page/build.mjs.
+const packed = (bytes) => deflateSync(bytes, { level: 9 }).toString("base64");
+
+// The page that takes a file holds the viewer's elements, the engine, and the script of its worker.
+async function checkPage() {
+  const view = /<header>.*<\/footer>/s.exec(readFileSync(join(here, "src/view.html"), "utf8"))[0];
+  const held = { view, engine: packed(readFileSync(join(library, "cscd.wasm"))), worker: packed(await bundle("check/worker.js")) };
+  return pageOf("check", "check.js", "three", { scripts: " 'wasm-unsafe-eval'", allowed: "worker-src blob:; ", held });
+}
+
+if (library) {
+  writeFileSync(out, await checkPage());
+} else {
+  writeFileSync(
+    out,
+    `// Made by page/build.mjs.
 // The standard asks compilers for literals of 65536 characters; those in use take longer ones.
 #pragma GCC diagnostic ignored "-Woverlength-strings"
 
 #include "bench/query/view/viewer_page.h"
 namespace cscd::bench {
 ${functionOf("viewer_page", await pageOf("view", "main.js", "three"))}
-${functionOf("report_page", await pageOf("report", "report.js", "uplot", "frame-src 'self'; "))}
+${functionOf("report_page", await pageOf("report", "report.js", "uplot", { allowed: "frame-src 'self'; " }))}
 }  // namespace cscd::bench
 `,
-);
+  );
+}

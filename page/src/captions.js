@@ -26,9 +26,9 @@ export class Captions {
     if (truth) text.push(truth.text);
     byId("moment").textContent = text.join(" · ");
     const facts = [["interval", String(interval + this.recording.clip.first_interval)], ["verdict", VERDICTS[strategy.verdict[interval]]],
-      ["answered by", strategy.answered_by[strategy.answerer[interval]] + (strategy.proven[interval] ? ", proven" : ", not proven")],
-      ["triangle pairs left by culling", strategy.pairs[interval].toLocaleString("en")],
-      ["elementary tests", strategy.tests[interval].toLocaleString("en")]];
+      ["answered by", strategy.answered_by[strategy.answerer[interval]] + (strategy.proven[interval] ? ", proven" : ", not proven")]];
+    if (strategy.pairs)  // the library does not count its work
+      facts.push(["triangle pairs left by culling", strategy.pairs[interval].toLocaleString("en")], ["elementary tests", strategy.tests[interval].toLocaleString("en")]);
     if (this.recording.truths) facts.push(["true motion", (this.recording.truths.get(interval)?.verdict ?? "clear").replaceAll("_", " ")]);
     if (strategy.has_clusters)
       facts.push(["clusters in force", strategy.clusters[interval].toLocaleString("en")],

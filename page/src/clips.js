@@ -13,7 +13,10 @@ function depthIn(clip) {
 
 export function chosenClip({ clips }) {
   const named = Number(/[#&]clip=(\d+)/.exec(window.location.hash)?.[1] ?? NaN);
-  if (named >= 0 && named < clips.length) return named;
+  return named >= 0 && named < clips.length ? named : worstClip(clips);
+}
+
+export function worstClip(clips) {
   const deepest = clips.reduce((a, b) => Math.max(a, depthIn(b)), 0);
   return Math.max(0, clips.findIndex((clip) => (deepest > 0 ? depthIn(clip) === deepest : summaryOf(clip).verdict !== "clear")));
 }
@@ -21,15 +24,20 @@ export function chosenClip({ clips }) {
 export function offerClips(header) {
   if (!header.clips) return;
   const list = byId("clips"), shown = chosenClip(header);
-  list.replaceChildren(...header.clips.map((clip, i) => {
+  listClips(header.clips, shown);
+  list.addEventListener("change", () => { window.location.hash = `clip=${list.value}`; });
+  window.addEventListener("hashchange", () => {
+    if (chosenClip(header) !== shown) window.location.reload();
+  });
+}
+
+export function listClips(clips, shown) {
+  const list = byId("clips");
+  list.replaceChildren(...clips.map((clip, i) => {
     const option = element("option", `${markOf(summaryOf(clip))} ${clip.title}`);
     option.value = String(i);
     return option;
   }));
   list.value = String(shown);
   byId("clips-label").hidden = false;
-  list.addEventListener("change", () => { window.location.hash = `clip=${list.value}`; });
-  window.addEventListener("hashchange", () => {
-    if (chosenClip(header) !== shown) window.location.reload();
-  });
 }

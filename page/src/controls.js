@@ -30,7 +30,7 @@ export function makeControls(viewer) {
   onClick("inset", () => viewer.showWhole(true));
   onClick("closer", () => viewer.showChosen(true));
   onClick("theme", () => viewer.setTheme(!isDark()));
-  document.addEventListener("keydown", (event) => onKey(viewer, event));
+  document.addEventListener("keydown", (event) => onKey(viewer, event), { signal: viewer.ended.signal });
 }
 
 function makeToggle(viewer, name, property, box) {

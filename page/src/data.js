@@ -1,4 +1,5 @@
-// Reads what `cscd view` put into the page: a header in JSON, and arrays of numbers that are compressed one by one.
+// Reads what `cscd view` put into the page: a header in JSON, and arrays of numbers that are compressed one by one. What the viewer
+// shows is made of both by recordingOf(), which the page that answers by itself (check.js) calls, too.
 
 import { chosenClip } from "./clips.js";
 
@@ -50,16 +51,12 @@ function offsets(counts) {
   return out;
 }
 
-function strategyOf(row, arrays, prefix, triangles) {
+function strategyOf(row, arrays, prefix) {
   const strategy = { ...row };
   for (const [name, values] of Object.entries(arrays))
     if (name.startsWith(prefix)) strategy[name.slice(prefix.length)] = values;
   strategy.contactOffset = offsets(strategy.kept_contacts);
   strategy.crossingOffset = offsets(strategy.kept_pairs);
-  const rowBytes = Math.ceil(triangles / 8);
-  undoDifferences(strategy.touched, rowBytes);
-  if (strategy.close) undoDifferences(strategy.close, rowBytes);  // of a page with a thickness
-  if (row.has_clusters) undoDifferences(strategy.positive, rowBytes);
   // One entry for each cover. The observers of interval i have the numbers offset[i] to offset[i + 1] - 1, and `place` holds
   // twelve numbers for each of them: where its head is at the start and at the end of the interval, then the same of its tail.
   strategy.observers = Array.from({ length: row.covers || 0 }, (_, c) => ({
@@ -95,8 +92,6 @@ function eventOf({ clip, strategies }, number) {
   return { number, name: event.first, out: event.out, atJoint: event.at_joint, first: from(event.begins), deepest: from(event.deepest), time: event.deepest.time, last: from(event.ends), point: event.point, depths: event.depth_at };
 }
 
-// Returns everything that the page shows. Lengths are scaled so that the clip's box has a longest side of 1, centred at the
-// origin: `toView` scales a point of the scene.
 export async function loadRecording() {
   const text = document.getElementById("header");
   const packed = document.getElementById("arrays");
@@ -115,10 +110,17 @@ export async function loadRecording() {
     arrays[section.name.slice(prefix.length)] = new TYPES[section.type](raw);
   }));
 
-  const { clip } = header;
-  const intervals = clip.frames - 1;
-  const places = decodePlaces(arrays.positions, clip.frames, clip.vertices);
-  const ends = decodePlaces(arrays.predicted_ends, arrays.interval_of_end.length, clip.vertices);
+  const { clip } = header, rowBytes = Math.ceil(clip.triangles / 8);
+  for (const [name, values] of Object.entries(arrays)) if (/^s\d+\.(touched|close|positive)$/.test(name)) undoDifferences(values, rowBytes);
+  arrays.places = decodePlaces(arrays.positions, clip.frames, clip.vertices);
+  arrays.ends = decodePlaces(arrays.predicted_ends, arrays.interval_of_end.length, clip.vertices);
+  return recordingOf(header, arrays);
+}
+
+// Returns everything that the page shows. Lengths are scaled so that the clip's box has a longest side of 1, centred at the
+// origin: `toView` scales a point of the scene. `places` and `ends` are positions on the grid, [frames][3][vertices].
+export function recordingOf(header, arrays) {
+  const { clip } = header, { places, ends } = arrays, intervals = clip.frames - 1;
   const endOfInterval = new Map(Array.from(arrays.interval_of_end, (interval, i) => [interval, i]));
   const side = clip.grid.step * 65535;
   const frameBoxes = boxesOf(places, clip);
@@ -147,7 +149,7 @@ export async function loadRecording() {
     events: header.events.map(({ event, text }) => ({ text, ...eventOf(header, event) })),
     // By interval, where the true motion does anything; `at` is when, in the interval. Null where nobody asked for it.
     truths: header.true_motion && new Map(header.true_motion.map((truth) => [truth.interval, truth])),
-    strategies: header.strategies.map((row, i) => strategyOf(row, arrays, `s${i}.`, clip.triangles)),
+    strategies: header.strategies.map((row, i) => strategyOf(row, arrays, `s${i}.`)),
     // A unit of observers' places is four steps of the grid.
     observerToView: (place, axis) => (4 * place) / 65535 - middle[axis],
     toView: (x, axis) => (x - clip.grid.origin[axis]) / side - middle[axis],

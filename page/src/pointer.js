@@ -3,8 +3,8 @@ import * as THREE from "three";
 import { lengthText, momentText } from "./words.js";
 
 export class Pointer {
-  // `label` is where the name is written; `shown` says which interval and which position, in frames, the stage shows.
-  constructor(recording, stage, painter, label, shown) {
+  // `label` is where the name is written; `shown` says which interval and which position, in frames, the stage shows. `signal` ends it.
+  constructor(recording, stage, painter, label, shown, signal) {
     Object.assign(this, { recording, stage, painter, label, shown });
     this.event = null;  // the last one that is not answered yet
     const later = (event) => {
@@ -13,8 +13,8 @@ export class Pointer {
         this.event = event;
       } else this.hide();
     };
-    for (const type of ["pointermove", "click"]) stage.canvas.addEventListener(type, later);
-    for (const type of ["pointerleave", "wheel"]) stage.canvas.addEventListener(type, () => this.hide(), { passive: true });
+    for (const type of ["pointermove", "click"]) stage.canvas.addEventListener(type, later, { signal });
+    for (const type of ["pointerleave", "wheel"]) stage.canvas.addEventListener(type, () => this.hide(), { passive: true, signal });
   }
 
   hide() { this.label.textContent = ""; }

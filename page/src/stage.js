@@ -146,6 +146,13 @@ export class Stage {
     new ResizeObserver(() => this.resize()).observe(canvas);
   }
 
+  end() {
+    this.ended = true;
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();  // browsers hold few contexts
+  }
+
   setUp(axis) {
     const sign = axis[0] === "-" ? -1 : 1, of = (name) => (axis.at(-1) === name ? sign : 0);
     this.up = new THREE.Vector3(of("x"), of("y"), of("z"));
@@ -201,11 +208,11 @@ export class Stage {
   }
 
   requestDraw() {
-    if (this.requested) return;
+    if (this.requested || this.ended) return;
     this.requested = true;
     requestAnimationFrame((now) => {
       this.requested = false;
-      this.step(now);
+      if (!this.ended) this.step(now);
     });
   }
 

@@ -1,10 +1,12 @@
 #!/bin/bash
-# Builds the npm package of library/js for WebAssembly, and tests it in Node and in Chromium.
+# Builds the npm package of library/js for WebAssembly, and the page that takes a file (build-wasm/check.html), and tests both in
+# Node and in Chromium.
 #
 #   scripts/check wasm [BUILD [--all]]
 #
 # BUILD is a folder with a build of the whole project. With it, the package and the library of BUILD have to give the same
-# answers to some steps of two scenes, bit by bit; with --all, to all steps of all scenes. scripts/record sets takes times.
+# answers to some steps of two scenes, bit by bit; with --all, to all steps of all scenes. The page has to give the verdicts of
+# `cscd query` on the glTF files of $CSCD_MODELS (../shared/models). scripts/record sets takes times.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)
 source "$root/scripts/lib/setup.sh"
@@ -44,7 +46,16 @@ node "$packages/node_modules/typescript/bin/tsc" --noEmit --strict --target es20
 status=0
 node "$root/library/js/test/check_page.mjs" "$packages" "$package" || status=$?
 [ $status -eq 0 ] || [ $status -eq 77 ] || exit 1  # 77: there is no Chromium
+
+say "the page that takes a file"
+node "$root/page/build.mjs" "$packages" "$build/check.html" "$package"
+size=$(stat -c %s "$build/check.html")
+echo "$build/check.html: $size bytes"
+[ "$size" -le 3000000 ] || die "the page is larger than 3 MB"
 [ -n "$native" ] || exit 0
+status=0
+node "$root/page/test/check_file.mjs" "$packages" "$build/check.html" "$native/cscd" "${CSCD_MODELS:-$root/../shared/models}" || status=$?
+[ $status -eq 0 ] || [ $status -eq 77 ] || exit 1
 
 say "answers of the package and of $native"
 clips=("hand_contact 47 54" "urchin_contact 8 15")
