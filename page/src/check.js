@@ -1,15 +1,12 @@
 // The page that takes a file: hands it to the worker (check/worker.js), and the viewer what the worker says.
 import { listClips, worstClip } from "./clips.js";
-import { recordingOf } from "./data.js";
+import { fromBase64, inflate, recordingOf } from "./data.js";
 import { byId } from "./dom.js";
 import { Viewer } from "./viewer.js";
 
 const PATIENCE = 60000;  // milliseconds without a word from the worker, after which it is stopped
 
-const bytesOf = async (id) => {
-  const binary = atob(byId(id).textContent), bytes = Uint8Array.from(binary, (c) => c.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer();
-};
+const bytesOf = (id) => inflate(fromBase64(byId(id).textContent));
 
 // An answer about nothing yet, so that the surface can be seen.
 function unanswered(name, title, { frames, triangles }) {
@@ -43,9 +40,6 @@ class Check {
   // Asks for a file, after a refusal perhaps.
   ask(refusal) {
     this.end();
-    this.viewer?.end();
-    this.viewer = window.cscd = null;
-    byId("viewer").replaceChildren();
     byId("files").value = "";
     byId("refusal").textContent = refusal;
     document.body.className = "asking";
@@ -116,7 +110,9 @@ class Check {
   show(number) {
     const { run } = this, clips = this.answered.length > 0 ? this.answered : run.clips, { clip, frames, arrays, events, rest, strategy } = clips[number];
     this.viewer?.end();
-    byId("viewer").replaceChildren(byId("view").content.cloneNode(true));
+    const { canvas } = this.viewer?.stage ?? {}, elements = byId("view").content.cloneNode(true);
+    if (canvas) elements.getElementById("canvas").replaceWith(canvas);  // browsers hold few, and take long to make one
+    byId("viewer").replaceChildren(elements);
     this.viewer = window.cscd = new Viewer(recordingOf({ ...run.header, clip, events, rest, strategies: [strategy] }, { ...frames, ...arrays }));
     if (this.answered.length < 2) return;
     listClips(this.answered, number);

@@ -120,7 +120,7 @@ export class Stage {
   constructor(canvas, recording, up, onDraw) {
     this.canvas = canvas;
     this.recording = recording;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
+    this.renderer = canvas.renderer ??= new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });  // one for all recordings
     this.renderer.setClearColor(0, 0);
     this.renderer.autoClear = false;
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
@@ -143,14 +143,19 @@ export class Stage {
     this.requested = false;
     this.onDraw = onDraw;
     this.frameTimes = [];
-    new ResizeObserver(() => this.resize()).observe(canvas);
+    this.observer = new ResizeObserver(() => this.resize());
+    this.observer.observe(canvas);
   }
 
   end() {
     this.ended = true;
+    this.observer.disconnect();
     this.controls.dispose();
-    this.renderer.dispose();
-    this.renderer.forceContextLoss();  // browsers hold few contexts
+    this.scene.traverse(({ geometry, material }) => {
+      geometry?.dispose();
+      material?.dispose();
+      for (const { value } of Object.values(material?.uniforms ?? {})) if (value?.isTexture) value.dispose();
+    });
   }
 
   setUp(axis) {

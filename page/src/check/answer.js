@@ -68,7 +68,7 @@ export class ClipAnswer {
     lists.kept_pairs.push(Math.min(MOST_PAIRS, pairs.length));
     for (const { i, sides } of few) this.keep(answer, i, sides);
     for (const pair of pairs.slice(0, MOST_PAIRS)) lists.crossing.push(...pair);
-    this.keepOverlaps(start, found, this.events.add(index, start, all, crossing, found));
+    this.keepOverlaps(start, found, this.events.add(index, start, crossing, found));
     const row = {
       index, ...this.moment(index), verdict: WORDS[verdict], collides: verdict !== CLEAR, time: kept[0]?.time ?? null, starts_embedded: all.length === 0,
       start_pairs: pairs.slice(0, MOST_LISTED_PAIRS), start_pairs_total: pairs.length, start_touching: met.length - crossing.size,
@@ -82,7 +82,7 @@ export class ClipAnswer {
   // The pose in which the last interval ends: what crosses there may be deepest.
   end(pose) {
     const { all, met, crossing, found } = this.meetings(pose, this.surface.body.allContacts(pose, pose).startCrossings);
-    this.keepOverlaps(pose, found, this.events.add(this.intervals.length, pose, all, crossing, found), true);
+    this.keepOverlaps(pose, found, this.events.add(this.intervals.length, pose, crossing, found), true);
     const { frame, seconds } = this.moment(this.intervals.length);
     this.lastPose = { frame, seconds, pairs: Array.from(crossing).slice(0, MOST_LISTED_PAIRS).map((pair) => this.surface.mesh.both(pair)), pairs_total: crossing.size, touching: met.length - crossing.size, left_out: all.length - met.length };
   }
@@ -144,7 +144,7 @@ export class ClipAnswer {
     if (!this.worst || crossing.size > this.worst.start_pairs || (crossing.size === this.worst.start_pairs && kept.length > this.worst.contacts))
       this.worst = { interval: index, time: when, start_pairs: crossing.size, contacts: kept.length };
     const take = (a, b, time, how) => {
-      const names = [placeName(a), placeName(b)], key = [...names].sort().join("\n"), meeting = { interval: index, time, how, names };
+      const names = [placeName(a), placeName(b)], key = [...names].sort().join("\0"), meeting = { interval: index, time, how, names };
       this.first ??= { ...meeting, time: when, how: verdict };
       if (this.parted) this.again ??= { ...meeting, time: when, how: verdict };
       if (!this.met.has(key)) this.met.set(key, { first: meeting, intervals: 0, contacts: 0, start_pairs: 0 });
@@ -213,8 +213,8 @@ export class ClipAnswer {
   }
 
   onlyFolds(names) {
-    const { joints } = this.surface, key = [...names].sort().join("\n");
-    return joints.join(names) && this.events.all.every((event) => [...event.names].sort().join("\n") !== key || joints.fold(event));
+    const { joints } = this.surface, key = [...names].sort().join("\0");
+    return joints.join(names) && this.events.all.every((event) => [...event.names].sort().join("\0") !== key || joints.fold(event));
   }
 
   firstNamed() {
@@ -244,7 +244,7 @@ export class ClipAnswer {
       depth: event.depth, at_rest: event.at_rest, point: event.point, out: event.out, vertices: event.vertices, area: event.area, other_is_open: event.other_is_open,
       pairs: event.pairs, curves: event.curves, crosses: event.crosses, at_joint: folds(event), depth_at: event.depth_at,
     });
-    const met = Array.from(this.met, ([key, entry]) => ({ first: key.split("\n")[0], second: key.split("\n")[1], intervals: entry.intervals, contacts: entry.contacts, start_pairs: entry.start_pairs, at_joint: this.onlyFolds(key.split("\n")) })).sort((a, b) => b.intervals - a.intervals);
+    const met = Array.from(this.met, ([key, entry]) => ({ first: key.split("\0")[0], second: key.split("\0")[1], intervals: entry.intervals, contacts: entry.contacts, start_pairs: entry.start_pairs, at_joint: this.onlyFolds(key.split("\0")) })).sort((a, b) => b.intervals - a.intervals);
     const sentences = worst ? [`${this.subject()}: ${this.worstText(worst)}.`] : [];
     const touching = met.filter((row) => row.start_pairs === 0 && !row.at_joint);
     if (worst && touching.length > 0) sentences.push(`These only touch: ${touching.slice(0, 3).map(({ first, second }) => `${first} and ${first === second ? "itself" : second}`).join(", ")}${touching.length > 3 ? `, and ${many(touching.length - 3, "more pair")}` : ""}.`);
@@ -262,10 +262,11 @@ export class ClipAnswer {
     const order = events.map((_, i) => i).sort((a, b) => folds(events[a]) - folds(events[b]) || events[b].depth.at_least - events[a].depth.at_least || events[b].depth.at_most - events[a].depth.at_most);
     const arrays = Object.fromEntries(Object.entries(TYPES).map(([name, Type]) => [name, Type.from(this.lists[name])]));
     for (const [name, Type] of Object.entries(OWN_TYPES)) arrays[`s0.${name}`] = Type.from(this.lists[name]);
-    arrays["s0.touched"] = Uint8Array.from(this.touched.flatMap((bits) => Array.from(bits)));
+    const row = this.touched[0].length, touched = (arrays["s0.touched"] = new Uint8Array(row * count));
+    this.touched.forEach((bits, i) => touched.set(bits, row * i));
     arrays["s0.proven"] = new Uint8Array(count).fill(1);
     arrays["s0.answerer"] = new Uint8Array(count);
-    const rest = { pairs: atRestCount(this.rest), touching: this.rest.touching.length, left_out: !this.isPose };
+    const rest = { pairs: this.rest.crossing.length, touching: this.rest.touching.length, left_out: !this.isPose };
     return {
       events: order.map((i) => ({ event: i, text: this.eventText(events[i]) })), rest, arrays,
       strategy: { name: "the library", answered_by: ["the library for WebAssembly"], covers: 0, has_clusters: false, has_patches: false, summary, sentences, details: this.details() },
@@ -273,8 +274,6 @@ export class ClipAnswer {
     };
   }
 }
-
-const atRestCount = ({ crossing }) => crossing.length;
 
 // The edge of some triangles that is nearest to a point, and the share of the way along it.
 function nearestEdge(mesh, x, p, triangles) {

@@ -29,15 +29,15 @@ export class Events {
     const count = new Map();
     segments.forEach(([a, b], i) => {
       if (deepest && sides[i] === undefined) return;
-      const [own, other] = sides[i] === 1 ? [b, a] : [a, b], key = `${this.placeOf(own)}\n${this.placeOf(other)}`;
+      const [own, other] = sides[i] === 1 ? [b, a] : [a, b], key = `${this.placeOf(own)}\0${this.placeOf(other)}`;
       count.set(key, (count.get(key) ?? 0) + 1);
     });
-    return Array.from(count).reduce((best, one) => (one[1] > best[1] ? one : best), ["the surface\nthe surface", 0])[0].split("\n");
+    return Array.from(count).reduce((best, one) => (one[1] > best[1] ? one : best), ["the surface\0the surface", 0])[0].split("\0");
   }
 
-  // Takes what overlaps at the start of an interval: `met` are the pairs of triangles that meet there, and `crossing` those of them
-  // that pass through each other. Returns the number of each overlap's event, or undefined.
-  add(interval, x, met, crossing, found) {
+  // Takes what overlaps at the start of an interval: `crossing` are the pairs of triangles that pass through each other there, and
+  // `found` is what the library says. Returns the number of each overlap's event, or undefined.
+  add(interval, x, crossing, found) {
     const { mesh, rest } = this, vertices = new Map(), pairs = new Map(), goingOn = new Set();
     const numbers = found.overlaps.map((overlap) => {
       const { curves, regions } = overlap, segments = segmentsOf(overlap), [deepest] = regions;
@@ -55,7 +55,7 @@ export class Events {
       const marked = regions.filter(({ bounds }) => bounds.length > 0).flatMap((region) => Array.from(region.vertices, (v) => v * mesh.components + other(region)));
       const own = segments.map(([a, b]) => mesh.pair(a, b));
       const number = mostNamed(this.vertices, marked) ?? mostNamed(this.pairs, own)
-        ?? Array.from(this.goingOn).find((n) => [...this.all[n].names].sort().join("\n") === [...names].sort().join("\n")) ?? this.all.push({ names, depth_at: [] }) - 1;
+        ?? Array.from(this.goingOn).find((n) => [...this.all[n].names].sort().join("\0") === [...names].sort().join("\0")) ?? this.all.push({ names, depth_at: [] }) - 1;
       this.extend(this.all[number], interval, x, overlap, names, segments, crossing, atRest);
       marked.forEach((key) => mark(vertices, key, number));
       own.forEach((key) => mark(pairs, key, number));
@@ -99,7 +99,7 @@ export class Joints {
   // `x` is the pose at rest; `boneOf` gives the number of a triangle's bone, or -1; `parent` is that of each bone.
   constructor(mesh, x, placeOf, boneOf, parent) {
     const spread = new Map(), joined = (this.joined = new Set());
-    const join = (a, b) => joined.add(`${a}\n${b}`).add(`${b}\n${a}`);
+    const join = (a, b) => joined.add(`${a}\0${b}`).add(`${b}\0${a}`);
     for (let t = 0; t < mesh.triangles; ++t) {
       const name = placeOf(t), bone = boneOf(t), key = `${bone} ${name}`, [p, q, r] = mesh.cornersOf(t), d = (v, k) => x[3 * v + k] - x[3 * p + k];
       if (!spread.has(key)) spread.set(key, { name, bone, weight: 0, sum: [0, 0, 0], squares: new Array(9).fill(0) });
@@ -125,7 +125,7 @@ export class Joints {
     }
   }
 
-  join([a, b]) { return this.joined.has(`${a}\n${b}`); }
+  join([a, b]) { return this.joined.has(`${a}\0${b}`); }
   fold(event) {
     if (!this.join(event.names)) return false;
     return (isKnown(event) ? event.depth.at_least : event.depth.at_most) < SHARE * Math.min(...event.names.map((name) => this.girth.get(name) ?? 0));

@@ -6,7 +6,7 @@ import { FBXLoader } from "three/examples/jsm/loaders/FBXLoader.js";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import { readSequence } from "./sequence.js";
 
-const ASK = "ask cscd query, which does";
+const ASK = "cscd query takes such files";
 
 // Extensions that say how a surface looks, where light comes from, or who made the file (scenes/import/gltf/extensions.cpp).
 const HARMLESS = /^(KHR_(materials_|texture_|lights_punctual|xmp|techniques_webgl)|EXT_(lights_|texture_|mesh_features|instance_features|structural_metadata)|MSFT_(texture_dds|packing_)|CESIUM_primitive_outline|FB_ngon_encoding|GODOT_single_root)/;

@@ -10,12 +10,12 @@ function groupsOf(x, tolerance) {
   const leaders = new Map(), group = new Int32Array(x.length / 3);
   const key = (i, j, k) => (Math.imul(i % 2097152, 73856093) ^ Math.imul(j % 2097152, 19349663) ^ Math.imul(k % 2097152, 83492791)) | 0;
   for (let v = 0; v < group.length; ++v) {
-    const [i, j, k] = [0, 1, 2].map((axis) => Math.floor(x[3 * v + axis] / cell));
+    const i = Math.floor(x[3 * v] / cell), j = Math.floor(x[3 * v + 1] / cell), k = Math.floor(x[3 * v + 2] / cell);
     let found = v;
-    for (let a = -1; a <= 1; ++a)
-      for (let b = -1; b <= 1; ++b)
-        for (let c = -1; c <= 1; ++c)
-          for (const other of leaders.get(key(i + a, j + b, k + c)) ?? []) if (other < found && distance(x, other, v) <= tolerance) found = other;
+    for (let cube = 0; cube < 27; ++cube) {
+      const near = leaders.get(key(i + (cube % 3) - 1, j + (Math.floor(cube / 3) % 3) - 1, k + Math.floor(cube / 9) - 1));
+      for (let n = 0; near && n < near.length; ++n) if (near[n] < found && distance(x, near[n], v) <= tolerance) found = near[n];
+    }
     group[v] = found;
     if (found !== v) continue;
     const own = key(i, j, k);
