@@ -20,7 +20,7 @@ export class ClipAnswer {
     const { mesh, atRest } = surface;
     Object.assign(this, { surface, clip, isPose: clip.frames < 2 });
     this.rest = new RestCrossings(mesh, this.isPose ? [] : atRest.crossing, this.isPose ? [] : atRest.met);
-    this.events = new Events(mesh, surface.placeName, this.rest, this.isPose ? null : atRest.found);
+    this.events = new Events(surface, this.rest, this.isPose ? null : atRest.found);
     this.lists = Object.fromEntries(Object.keys({ ...TYPES, ...OWN_TYPES }).map((name) => [name, []]));
     this.touched = [];
     this.intervals = [];
@@ -34,6 +34,7 @@ export class ClipAnswer {
   meetings(start, startCrossings) {
     const { mesh, body } = this.surface, all = [];
     for (let i = 0; i < startCrossings.length; i += 2) all.push(mesh.pair(startCrossings[i], startCrossings[i + 1]));
+    all.sort((a, b) => a - b);
     this.rest.follow(all);
     const met = all.filter((pair) => !this.rest.explains(pair));
     if (all.length === 0) return { all, met, crossing: new Set(), found: { overlaps: [] } };
@@ -59,7 +60,7 @@ export class ClipAnswer {
     const bits = new Uint8Array(Math.ceil(mesh.triangles / 8));
     for (const { sides } of kept) for (const t of sides.flat()) bits[t >> 3] |= 1 << (t & 7);
     this.touched.push(bits);
-    const pairs = Array.from(crossing).sort((a, b) => a - b).map((pair) => mesh.both(pair)), few = kept.slice(0, MOST_CONTACTS);
+    const pairs = Array.from(crossing, (pair) => mesh.both(pair)), few = kept.slice(0, MOST_CONTACTS);
     lists.verdict.push(verdict);
     lists.milliseconds.push(milliseconds);
     lists.contacts.push(kept.length);
@@ -170,7 +171,7 @@ export class ClipAnswer {
     return { ...(interval === this.count ? { interval: interval - 1, time: 1 } : { interval, time }), ...this.moment(interval, time) };
   }
   frame(interval, time) { return String(Math.round(100 * this.moment(interval, time).frame) / 100); }
-  momentText(interval, time) { return `frame ${this.frame(interval, time)} (${number(this.moment(interval, time).seconds)} s${this.clip.firstFrame !== 0 ? " into the clip" : ""})`; }
+  momentText(interval, time) { return `frame ${this.frame(interval, time)} (${Number(this.moment(interval, time).seconds.toPrecision(4))} s${this.clip.firstFrame !== 0 ? " into the clip" : ""})`; }
   length(length) { return lengthText({ header: this.surface.header }, length); }
 
   subject() {
@@ -197,8 +198,9 @@ export class ClipAnswer {
   meetingText({ names, how }) { return both(...names, how === CROSSES ? "crosses" : "touches").replace(/^it /, "the surface "); }
 
   predicate(named) {
-    const { counts, count, sums } = this, of = (n) => `${n} of ${many(count, "interval")}`, rest = "what crosses at rest", frames = this.isPose ? " in its one pose" : ` in frames ${this.frame(0)} to ${this.frame(count)}`;
-    const apart = sums.withLeftOut > 0 ? `, apart from ${rest}` : "";
+    const { counts, count, sums } = this, of = (n) => `${n} of ${many(count, "interval")}`, frames = this.isPose ? " in its one pose" : ` in frames ${this.frame(0)} to ${this.frame(count)}`;
+    const isDeeper = this.events.all.some(({ at_rest }) => at_rest !== null), rest = `what crosses at rest${isDeeper ? ", which comes to lie deeper than there" : ""}`;
+    const apart = sums.withLeftOut > 0 || isDeeper ? `, apart from ${rest}` : "";
     if (!this.first) {
       const still = !sums.moves && !this.isPose;
       return `${still ? `does not move${frames}, and ` : ""}${apart ? `touches itself${still ? "" : frames} only in ${rest}` : `does not touch itself${still ? "" : frames}`}`;
@@ -217,9 +219,11 @@ export class ClipAnswer {
     return joints.join(names) && this.events.all.every((event) => [...event.names].sort().join("\0") !== key || joints.fold(event));
   }
 
+  sorted() { return Array.from(this.met).sort(([a], [b]) => (a < b ? -1 : 1)); }
+
   firstNamed() {
     if (!this.first || !this.onlyFolds(this.first.names)) return this.first;
-    const others = Array.from(this.met.values(), ({ first }) => first).filter(({ names }) => !this.onlyFolds(names));
+    const others = this.sorted().map(([, { first }]) => first).filter(({ names }) => !this.onlyFolds(names));
     return others.reduce((a, b) => (b.interval < a.interval || (b.interval === a.interval && b.time < a.time) ? b : a), others[0]) ?? this.first;
   }
 
@@ -244,7 +248,7 @@ export class ClipAnswer {
       depth: event.depth, at_rest: event.at_rest, point: event.point, out: event.out, vertices: event.vertices, area: event.area, other_is_open: event.other_is_open,
       pairs: event.pairs, curves: event.curves, crosses: event.crosses, at_joint: folds(event), depth_at: event.depth_at,
     });
-    const met = Array.from(this.met, ([key, entry]) => ({ first: key.split("\0")[0], second: key.split("\0")[1], intervals: entry.intervals, contacts: entry.contacts, start_pairs: entry.start_pairs, at_joint: this.onlyFolds(key.split("\0")) })).sort((a, b) => b.intervals - a.intervals);
+    const met = this.sorted().map(([key, entry]) => ({ first: key.split("\0")[0], second: key.split("\0")[1], intervals: entry.intervals, contacts: entry.contacts, start_pairs: entry.start_pairs, at_joint: this.onlyFolds(key.split("\0")) })).sort((a, b) => b.intervals - a.intervals);
     const sentences = worst ? [`${this.subject()}: ${this.worstText(worst)}.`] : [];
     const touching = met.filter((row) => row.start_pairs === 0 && !row.at_joint);
     if (worst && touching.length > 0) sentences.push(`These only touch: ${touching.slice(0, 3).map(({ first, second }) => `${first} and ${first === second ? "itself" : second}`).join(", ")}${touching.length > 3 ? `, and ${many(touching.length - 3, "more pair")}` : ""}.`);
@@ -276,16 +280,16 @@ export class ClipAnswer {
 }
 
 // The edge of some triangles that is nearest to a point, and the share of the way along it.
-function nearestEdge(mesh, x, p, triangles) {
-  let best = [0, 0, 0], least = Infinity;
-  for (const t of triangles) {
-    const corners = mesh.cornersOf(t);
+function nearestEdge({ corners }, x, p, triangles) {
+  let best, least = Infinity;
+  for (const t of triangles)
     for (let k = 0; k < 3; ++k) {
-      const a = corners[k], b = corners[(k + 1) % 3], way = [0, 1, 2].map((i) => x[3 * b + i] - x[3 * a + i]), to = [0, 1, 2].map((i) => p[i] - x[3 * a + i]);
-      const along = Math.min(1, Math.max(0, (way[0] * to[0] + way[1] * to[1] + way[2] * to[2]) / (way[0] ** 2 + way[1] ** 2 + way[2] ** 2 || 1)));
-      const off = Math.hypot(to[0] - along * way[0], to[1] - along * way[1], to[2] - along * way[2]);
-      if (off < least) best = [a, b, along], least = off;
+      const a = corners[3 * t + k], b = corners[3 * t + (k + 1) % 3];
+      const wx = x[3 * b] - x[3 * a], wy = x[3 * b + 1] - x[3 * a + 1], wz = x[3 * b + 2] - x[3 * a + 2];
+      const px = p[0] - x[3 * a], py = p[1] - x[3 * a + 1], pz = p[2] - x[3 * a + 2];
+      const along = Math.min(1, Math.max(0, (wx * px + wy * py + wz * pz) / (wx * wx + wy * wy + wz * wz || 1)));
+      const off = (px - along * wx) ** 2 + (py - along * wy) ** 2 + (pz - along * wz) ** 2;
+      if (best === undefined || off < least) best = [a, b, along], least = off;
     }
-  }
   return best;
 }

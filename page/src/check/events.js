@@ -17,22 +17,41 @@ const mark = (marks, key, event) => (marks.has(key) ? marks.get(key).push(event)
 
 export class Events {
   // `rest` is what crosses at rest, and `atRest` what the library says of that pose.
-  constructor(mesh, placeOf, rest, atRest) {
-    Object.assign(this, { mesh, placeOf, rest, all: [], vertices: new Map(), pairs: new Map(), goingOn: new Set() });
+  constructor(surface, rest, atRest) {
+    const { mesh } = surface;
+    Object.assign(this, { surface, mesh, rest, all: [], vertices: new Map(), pairs: new Map(), goingOn: new Set() });
     this.restDepths = (atRest?.overlaps ?? []).map((overlap) => ({
       depth: overlap.depth > 0 ? overlap.depth : overlap.depthBound,
       near: new Set(Array.from(new Set(segmentsOf(overlap).flat())).flatMap((t) => Array.from(mesh.within(t, 2)))),
     }));
   }
 
-  namesOf({ regions: [deepest] }, segments, sides) {
-    const count = new Map();
-    segments.forEach(([a, b], i) => {
-      if (deepest && sides[i] === undefined) return;
-      const [own, other] = sides[i] === 1 ? [b, a] : [a, b], key = `${this.placeOf(own)}\0${this.placeOf(other)}`;
-      count.set(key, (count.get(key) ?? 0) + 1);
+  // Which side of each curve the deepest region lies on, where vertices of it lie beside the curve. Of two sides, that of the
+  // vertex that comes first counts.
+  sidesOf({ curves, regions: [deepest] }) {
+    if (!deepest) return curves.map(() => 0);
+    const place = new Map(Array.from(deepest.vertices, (v, i) => [v, i])), sides = new Map();
+    for (let i = 0; i < deepest.bounds.length; i += 2) {
+      const [c, side] = deepest.bounds.subarray(i, i + 2), { faces } = curves[c];
+      let first = Infinity;
+      for (let f = side; f < faces.length; f += 2) for (const v of this.mesh.cornersOf(faces[f])) first = Math.min(first, place.get(v) ?? Infinity);
+      if (first < (sides.get(c)?.first ?? Infinity)) sides.set(c, { side, first });
+    }
+    return curves.map((_, c) => (sides.size > 0 ? sides.get(c)?.side : 0));
+  }
+
+  // The places between which most segments of the curves run, the one of the deepest region first.
+  namesOf(overlap) {
+    const { surface } = this, count = new Map(), sides = this.sidesOf(overlap);
+    overlap.curves.forEach(({ faces }, c) => {
+      for (let i = 0; sides[c] !== undefined && i < faces.length; i += 2) {
+        const [own, other] = [faces[i + sides[c]], faces[i + 1 - sides[c]]], a = surface.placeNumber(own), b = surface.placeNumber(other), key = `${a} ${b}`;
+        const entry = count.get(key) ?? count.set(key, { a, b, times: 0, own, other }).get(key);
+        Object.assign(entry, { own, other, times: entry.times + 1 });
+      }
     });
-    return Array.from(count).reduce((best, one) => (one[1] > best[1] ? one : best), ["the surface\0the surface", 0])[0].split("\0");
+    const { own, other } = Array.from(count.values()).reduce((x, y) => (y.times - x.times || x.a - y.a || x.b - y.b) > 0 ? y : x);
+    return [surface.placeName(own), surface.placeName(other)];
   }
 
   // Takes what overlaps at the start of an interval: `crossing` are the pairs of triangles that pass through each other there, and
@@ -40,17 +59,15 @@ export class Events {
   add(interval, x, crossing, found) {
     const { mesh, rest } = this, vertices = new Map(), pairs = new Map(), goingOn = new Set();
     const numbers = found.overlaps.map((overlap) => {
-      const { curves, regions } = overlap, segments = segmentsOf(overlap), [deepest] = regions;
+      const { curves, regions } = overlap, segments = segmentsOf(overlap);
       if (segments.length === 0) return undefined;
-      const sideOf = new Map(Array.from({ length: (deepest?.bounds.length ?? 0) / 2 }, (_, i) => [deepest.bounds[2 * i], deepest.bounds[2 * i + 1]]));
-      const sides = curves.flatMap(({ faces }, c) => new Array(faces.length / 2).fill(sideOf.get(c)));
       const explained = segments.filter(([a, b]) => rest.explains(mesh.pair(a, b))).length;
       let atRest = null;
       if (2 * (segments.length - explained) <= segments.length && explained > 0) {
         atRest = this.restDepths.filter(({ near }) => segments.some(([a, b]) => near.has(a) && near.has(b))).reduce((most, { depth }) => Math.max(most, depth), 0);
         if (!(overlap.depth > DEEPER * atRest)) return undefined;
       }
-      const names = this.namesOf(overlap, segments, sides);
+      const names = this.namesOf(overlap);
       const other = (region) => mesh.component[curves[region.bounds[0]].faces[1 - region.bounds[1]]];
       const marked = regions.filter(({ bounds }) => bounds.length > 0).flatMap((region) => Array.from(region.vertices, (v) => v * mesh.components + other(region)));
       const own = segments.map(([a, b]) => mesh.pair(a, b));

@@ -99,7 +99,7 @@ export function tellApart(mesh, x, met, found) {
     const copies = copiesIn(mesh, x);
     for (const pair of copies.size > 0 ? met : []) if (copies.has(mesh.both(pair).map((t) => mesh.component[t]).join(" "))) crossing.add(pair);
   }
-  return crossing;
+  return new Set(met.filter((pair) => crossing.has(pair)));  // in order
 }
 
 // What crosses at rest is how a surface is made, and no collision (core/detect/start/rest_crossings.h): a pair explains itself,

@@ -83,6 +83,7 @@ async function readGltf(bytes, files) {
     return { name: "cscd" };
   });
   const { scene, animations } = await loader.parseAsync(json, "");
+  animations.forEach((clip, i) => { clip.name = json.animations[i].name ?? ""; });  // three.js makes names up
   return new Model(scene, animations, { format: "glTF 2", up: "y", because: "glTF files have it so", centimetres: 100, notes });
 }
 

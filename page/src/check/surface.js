@@ -134,6 +134,9 @@ export class Surface {
     }
     if (texts.length > 65536) throw new Error("has more than 65536 names of bones and parts; ask cscd query");
     this.texts = texts;
+    const labels = new Map();  // of parts, in the order in which they come
+    for (let t = 0; t < mesh.triangles; ++t) if (!labels.has(this.part[t])) labels.set(this.part[t], labels.size);
+    this.placeNumber = (t) => (this.boneOf(t) < 0 ? -1 - labels.get(this.part[t]) : this.boneOf(t));
     this.placeName = (t) => texts[this.place[t]];
   }
 
