@@ -2,7 +2,7 @@
 import { listClips, worstClip } from "./clips.js";
 import { fromBase64, inflate, recordingOf } from "./data.js";
 import { byId } from "./dom.js";
-import { Viewer } from "./viewer.js";
+import { requireBrowser, Viewer } from "./viewer.js";
 
 const PATIENCE = 60000;  // milliseconds without a word from the worker, after which it is stopped
 
@@ -49,7 +49,7 @@ class Check {
   async take(files) {
     this.ask("");
     const run = (this.run = { begun: performance.now(), clips: [], header: null });
-    document.body.className = "checking unanswered";
+    document.body.className = "checking unanswered reading";
     byId("file").textContent = files.map(({ name }) => name)[0] + (files.length > 1 ? ` and ${files.length - 1} more` : "");
     this.say("reading ...", 0);
     const given = await Promise.all(files.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() })));
@@ -100,20 +100,26 @@ class Check {
     else this.ask(`${byId("file").textContent}: ${why.toLowerCase()} before a clip was answered.`);
   }
 
-  finish(what) {
+  async finish(what) {
+    const { run } = this;
     this.end();
     this.say(what, 1);
-    document.body.className = "";
-    this.show(worstClip(this.answered));
+    await this.show(worstClip(this.answered));
+    if (this.run === run) document.body.className = "";
   }
 
-  show(number) {
+  // In two steps, so that no step blocks the page for long.
+  async show(number) {
     const { run } = this, clips = this.answered.length > 0 ? this.answered : run.clips, { clip, frames, arrays, events, rest, strategy } = clips[number];
+    const recording = (run.shown = recordingOf({ ...run.header, clip, events, rest, strategies: [strategy] }, { ...frames, ...arrays }));
+    await new Promise((go) => { setTimeout(go); });
+    if (this.run !== run || run.shown !== recording) return;  // another one is wanted by now
     this.viewer?.end();
     const { canvas } = this.viewer?.stage ?? {}, elements = byId("view").content.cloneNode(true);
     if (canvas) elements.getElementById("canvas").replaceWith(canvas);  // browsers hold few, and take long to make one
     byId("viewer").replaceChildren(elements);
-    this.viewer = window.cscd = new Viewer(recordingOf({ ...run.header, clip, events, rest, strategies: [strategy] }, { ...frames, ...arrays }));
+    this.viewer = window.cscd = new Viewer(recording);
+    document.body.classList.remove("reading");
     if (this.answered.length < 2) return;
     listClips(this.answered, number);
     byId("clips").addEventListener("change", ({ target }) => this.show(Number(target.value)));
@@ -135,4 +141,9 @@ class Check {
   }
 }
 
-window.check = new Check();
+try {
+  requireBrowser();
+  window.check = new Check();
+} catch (error) {
+  byId("refusal").textContent = error.message;
+}

@@ -2,7 +2,7 @@
 import { offerClips } from "./clips.js";
 import { loadRecording } from "./data.js";
 import { byId } from "./dom.js";
-import { Viewer } from "./viewer.js";
+import { requireBrowser, Viewer } from "./viewer.js";
 
 function fail(error) {
   document.body.classList.add("failed");
@@ -15,9 +15,7 @@ function fail(error) {
 }
 
 async function begin() {
-  const canvas = document.createElement("canvas");
-  if (!canvas.getContext("webgl2")) throw new Error("This browser has no WebGL 2, which draws the surface; switch it on, or use another browser.");
-  if (typeof DecompressionStream === "undefined") throw new Error("This browser cannot unpack the recording; use one from 2023 or later.");
+  requireBrowser();
   window.cscd = new Viewer(await loadRecording());
   offerClips(window.cscd.recording.header);
 }

@@ -272,3 +272,9 @@ export class Viewer {
     if (!hidden) this.stage.requestDraw();
   }
 }
+
+// Throws where the browser lacks what a viewer needs.
+export function requireBrowser() {
+  if (!document.createElement("canvas").getContext("webgl2")) throw new Error("This browser has no WebGL 2, which draws the surface; switch it on, or use another browser.");
+  if (typeof DecompressionStream === "undefined") throw new Error("This browser cannot unpack what the page holds; use one from 2023 or later.");
+}

@@ -19,8 +19,8 @@ export class ClipAnswer {
   constructor(surface, clip) {
     const { mesh, atRest } = surface;
     Object.assign(this, { surface, clip, isPose: clip.frames < 2 });
-    this.rest = new RestCrossings(mesh, this.isPose ? [] : atRest.crossing, this.isPose ? [] : atRest.met);
-    this.events = new Events(surface, this.rest, this.isPose ? null : atRest.found);
+    this.rest = this.isPose ? new RestCrossings(mesh, [], atRest.met) : atRest.rest.anew();  // of one pose, nothing is left out
+    this.events = new Events(surface, this.rest, this.isPose ? [] : atRest.depths);
     this.lists = Object.fromEntries(Object.keys({ ...TYPES, ...OWN_TYPES }).map((name) => [name, []]));
     this.touched = [];
     this.intervals = [];
@@ -228,10 +228,10 @@ export class ClipAnswer {
   }
 
   details() {
-    const { counts, count, worst, sums, surface } = this, { atRest, model } = surface, out = [];
+    const { counts, count, worst, sums, surface } = this, { model } = surface, out = [];
     if (!this.isPose) out.push(`${many(count, "interval")}: ${counts[CLEAR]} clear, ${counts[TOUCHES]} touch, ${counts[CROSSES]} cross at their start`);
     if (worst && !this.isPose) out.push(`Worst: interval ${worst.interval}, from ${this.momentText(worst.interval)}: ${worst.start_pairs ? `${many(worst.start_pairs, "pair")} of triangles cross at its start, and ` : ""}${many(worst.contacts, "contact")}`);
-    if (atRest.crossing.length > 0 && !this.isPose) out.push(`Crosses at rest${surface.isSequence ? " (the first frame)" : ""}: ${many(this.rest.crossing.length, "pair")} of triangles; left out of ${many(sums.withLeftOut, "interval")}, with ${many(sums.leftOutContacts, "contact")}`);
+    if (this.rest.crossing.length > 0) out.push(`Crosses at rest${surface.isSequence ? " (the first frame)" : ""}: ${many(this.rest.crossing.length, "pair")} of triangles; left out of ${many(sums.withLeftOut, "interval")}, with ${many(sums.leftOutContacts, "contact")}`);
     if (this.lastPose?.pairs_total > 0) out.push(`Ends crossed: ${many(this.lastPose.pairs_total, "pair")} of triangles cross in its last pose`);
     out.push(`${number(model.fps)} frames a second, ${{ file: "as the file says", keys: "as the keys of the file are spaced", assumed: "because the file does not say" }[model.fpsFrom]}`);
     out.push("Posed by three.js and answered in this page by cscd's library, every answer proven for straight lines between these frames");

@@ -15,15 +15,17 @@ function mostNamed(marks, keys) {
 }
 const mark = (marks, key, event) => (marks.has(key) ? marks.get(key).push(event) : marks.set(key, [event]));
 
+// How deep the overlaps at rest are, and which triangles are near each (bench/answer/rest_depths.h).
+export const restDepths = (mesh, { overlaps }) => overlaps.map((overlap) => ({
+  depth: overlap.depth > 0 ? overlap.depth : overlap.depthBound,
+  near: new Set(Array.from(new Set(segmentsOf(overlap).flat())).flatMap((t) => Array.from(mesh.within(t, 2)))),
+}));
+
 export class Events {
-  // `rest` is what crosses at rest, and `atRest` what the library says of that pose.
-  constructor(surface, rest, atRest) {
+  // `rest` is what crosses at rest, and `restDepths` how deep what lies in what there.
+  constructor(surface, rest, restDepths) {
     const { mesh } = surface;
-    Object.assign(this, { surface, mesh, rest, all: [], vertices: new Map(), pairs: new Map(), goingOn: new Set() });
-    this.restDepths = (atRest?.overlaps ?? []).map((overlap) => ({
-      depth: overlap.depth > 0 ? overlap.depth : overlap.depthBound,
-      near: new Set(Array.from(new Set(segmentsOf(overlap).flat())).flatMap((t) => Array.from(mesh.within(t, 2)))),
-    }));
+    Object.assign(this, { surface, mesh, rest, restDepths, all: [], vertices: new Map(), pairs: new Map(), goingOn: new Set() });
   }
 
   // Which side of each curve the deepest region lies on, where vertices of it lie beside the curve. Of two sides, that of the

@@ -47,8 +47,8 @@ export class Mesh {
   }
 
   within(t, rings) {
-    let inside = new Set([t]);
-    for (let ring = 0; ring < rings; ++ring) inside = new Set(Array.from(inside).flatMap((s) => Array.from(this.cornersOf(s)).flatMap((v) => Array.from(this.around(v)))));
+    const inside = new Set([t]);
+    for (let ring = 0; ring < rings; ++ring) for (const s of Array.from(inside)) for (const v of this.cornersOf(s)) for (const next of this.around(v)) inside.add(next);
     return inside;
   }
 }
@@ -68,6 +68,12 @@ export function straddle(mesh, x, a, b) {
     return low > 0 && high > 0;
   };
   return straddles(a, b) && straddles(b, a);
+}
+
+// Whether two triangles of different components have the same three corners.
+function coincide(mesh, x, a, b) {
+  if (mesh.component[a] === mesh.component[b]) return false;
+  return mesh.cornersOf(a).every((v) => mesh.cornersOf(b).some((w) => x[3 * v] === x[3 * w] && x[3 * v + 1] === x[3 * w + 1] && x[3 * v + 2] === x[3 * w + 2]));
 }
 
 // Components of which every triangle lies exactly on one of another component, by pairs of both: a coat copied from a body.
@@ -95,9 +101,9 @@ export function tellApart(mesh, x, met, found) {
     const all = depth > 1e-12 * largest || pairs.some((pair) => straddle(mesh, x, ...mesh.both(pair)));
     if (all) for (const pair of pairs) if (known.has(pair)) crossing.add(pair);
   }
-  if (mesh.components > 1 && crossing.size < met.length) {
+  if (mesh.components > 1 && met.some((pair) => !crossing.has(pair) && coincide(mesh, x, ...mesh.both(pair)))) {
     const copies = copiesIn(mesh, x);
-    for (const pair of copies.size > 0 ? met : []) if (copies.has(mesh.both(pair).map((t) => mesh.component[t]).join(" "))) crossing.add(pair);
+    for (const pair of met) if (copies.has(mesh.both(pair).map((t) => mesh.component[t]).join(" "))) crossing.add(pair);
   }
   return new Set(met.filter((pair) => crossing.has(pair)));  // in order
 }
@@ -129,25 +135,28 @@ export class RestCrossings {
     this.touching = met.filter((pair) => !this.explains(pair));
   }
 
-  // The crossings at rest that explain a pair, by their numbers.
-  *reasons(pair) {
-    if (this.pairs.has(pair)) yield this.pairs.get(pair);
-    const [a, b] = this.mesh.both(pair), others = new Set(this.near(b));
-    if (others.size > 0) for (const number of this.near(a)) if (others.has(number ^ 1)) yield number >> 1;
-  }
+  // The same for another clip, in which nothing has parted yet.
+  anew() { return Object.assign(Object.create(RestCrossings.prototype), this, { parted: new Set() }); }
 
-  explains(pair) {
-    if (this.pairs.size === 0) return false;
-    for (const i of this.reasons(pair)) if (!this.parted.has(this.place[i])) return true;
+  // Calls take(number) with the crossings at rest that explain a pair, until it returns true; returns whether it did.
+  someReason(pair, take) {
+    const [a, b] = this.mesh.both(pair), near = this.near(a), others = this.near(b);
+    if (this.pairs.has(pair) && take(this.pairs.get(pair))) return true;
+    for (let i = 0, j = 0; i < near.length; ++i) {  // both rows ascend, and their entries for one crossing differ in the last bit
+      while (j < others.length && others[j] < (near[i] & ~1)) ++j;
+      if ((others[j] === (near[i] ^ 1) || (others[j] >> 1 === near[i] >> 1 && others[j + 1] === (near[i] ^ 1))) && take(near[i] >> 1)) return true;
+    }
     return false;
   }
+
+  explains(pair) { return this.pairs.size > 0 && this.someReason(pair, (i) => !this.parted.has(this.place[i])); }
   explainsContact(sides) { return this.pairs.size > 0 && sides[0].some((s) => sides[1].some((t) => s !== t && this.explains(this.mesh.pair(s, t)))); }
 
   // Takes all that meets in the next pose: places of which nothing crosses have parted.
   follow(met) {
     if (this.pairs.size === 0) return;
     const here = new Set();
-    for (const pair of met) for (const i of this.reasons(pair)) here.add(this.place[i]);
+    for (const pair of met) this.someReason(pair, (i) => void here.add(this.place[i]));
     for (const place of this.place) if (!here.has(place)) this.parted.add(place);
   }
 }

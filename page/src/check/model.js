@@ -22,7 +22,18 @@ const FBX_REFUSED = [
 // Frames a second by the number of FBX's time mode.
 const FBX_RATES = [, 120, 100, 60, 50, 48, 30, 30, 30 / 1.001, 30 / 1.001, 25, 24, 1000, 24 / 1.001, , 96, 72, 60 / 1.001, 120 / 1.001];
 
-const nameOf = (node) => node.userData.name ?? node.userData.originalName ?? node.name;
+// Has a reader read a file, and keeps what it says on the console.
+async function reading(read, said = []) {
+  const { warn } = console;
+  console.warn = (...words) => said.push(words.join(" "));
+  try {
+    return await read();
+  } catch ({ message }) {
+    throw new Error(`cannot be read (${message.replace(/^THREE\.\w+: /, "").replace(/\.$/, "")}); export it again`);
+  } finally {
+    console.warn = warn;
+  }
+}
 
 // Returns a model: {parts, clips, fps, fpsFrom, up, centimetres, notes, node tree, and how to pose it}. Throws an Error with one
 // sentence where the file cannot be read or posed as it means.
@@ -59,7 +70,7 @@ function refuseMatrix(matrix) {
 }
 
 async function readGltf(bytes, files) {
-  const { json, body } = partsOfGltf(bytes);
+  const { json, body } = await reading(() => partsOfGltf(bytes));
   const known = (extension) => READ.includes(extension) || HARMLESS.test(extension);
   const unknown = (json.extensionsRequired ?? []).find((extension) => !known(extension));
   if (unknown) throw new Error(`needs the glTF extension ${unknown}, which this page does not read${unknown.includes("draco") ? `; ${ASK}` : "; export it without"}`);
@@ -77,14 +88,15 @@ async function readGltf(bytes, files) {
     }
   for (const { matrix } of json.nodes ?? []) if (matrix) refuseMatrix(matrix);
   json.scenes ??= [{ nodes: (json.nodes ?? []).flatMap((_, n) => (json.nodes.some(({ children }) => children?.includes(n)) ? [] : [n])) }];
-  const loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
+  const loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder), buffers = (json.buffers ?? []).map((buffer) => bufferOf(buffer, body, files));
   loader.register((parser) => {
-    parser.loadBuffer = async (i) => bufferOf(json.buffers[i], body, files);  // nothing is fetched
+    parser.loadBuffer = async (i) => buffers[i];  // nothing is fetched
     return { name: "cscd" };
   });
-  const { scene, animations } = await loader.parseAsync(json, "");
+  const { scene, animations, parser } = await reading(() => loader.parseAsync(json, ""));
   animations.forEach((clip, i) => { clip.name = json.animations[i].name ?? ""; });  // three.js makes names up
-  return new Model(scene, animations, { format: "glTF 2", up: "y", because: "glTF files have it so", centimetres: 100, notes });
+  const nodeOf = (mesh) => (parser.associations.get(mesh)?.nodes === undefined ? mesh.parent : mesh);  // a primitive of several
+  return new Model(scene, animations, { nodeOf, nameOf: (node) => node.userData.name ?? "", format: "glTF 2", up: "y", because: "glTF files have it so", centimetres: 100, notes });
 }
 
 // ---- FBX ----
@@ -97,17 +109,11 @@ function timeModeOf(bytes) {
   return last < 0 ? 0 : new DataView(bytes).getInt32(last + 1, true);
 }
 
-function readFbx(bytes) {
-  const said = [], { warn } = console, manager = new LoadingManager();
+async function readFbx(bytes) {
+  const said = [], manager = new LoadingManager();
   manager.addHandler(/./, { path: "-", setPath() {}, load: () => new Texture() });  // pictures do not matter
   globalThis.window ??= globalThis;  // which cameras ask
-  console.warn = (...words) => said.push(words.join(" "));
-  let scene;
-  try {
-    scene = new FBXLoader(manager).parse(bytes, "-");
-  } finally {
-    console.warn = warn;
-  }
+  const scene = await reading(() => new FBXLoader(manager).parse(bytes, "-"), said);
   const refused = FBX_REFUSED.find(([pattern]) => said.some((line) => pattern.test(line)));
   if (refused) throw new Error(`${refused[1]}; ${ASK}`);
   const nodes = [];
@@ -117,7 +123,7 @@ function readFbx(bytes) {
   if (twice) throw new Error(`has several nodes with the name ${twice}, of which three.js moves one; ${ASK}`);
   const rate = FBX_RATES[timeModeOf(bytes)], notes = [
     "FBX is posed by three.js, which joins keys by straight lines and cuts polygons in its own way: where keys are farther apart than frames, or faces have four corners, cscd query may answer otherwise"];
-  return new Model(scene, scene.animations, { format: "FBX", up: "y", because: "three.js turns FBX files so", centimetres: scene.userData.unitScaleFactor ?? 0, notes, rate });
+  return new Model(scene, scene.animations, { nodeOf: (mesh) => mesh, nameOf: (node) => node.userData.originalName ?? node.name, format: "FBX", up: "y", because: "three.js turns FBX files so", centimetres: scene.userData.unitScaleFactor ?? 0, notes, rate });
 }
 
 // ---- Any of both ----
@@ -147,11 +153,13 @@ function numbersOf(attribute) {
 }
 
 // A mesh: where its vertices are, which bones move them, and its morph targets.
-function partOf(mesh) {
+function partOf(mesh, { nodeOf, nameOf }) {
   const { geometry, skeleton } = mesh, { position, skinIndex, skinWeight } = geometry.attributes;
-  if (mesh.isInstancedMesh) throw new Error(`has a mesh that is drawn many times by one node (${nameOf(mesh)}), which this page does not pose; export it without EXT_mesh_gpu_instancing`);
+  if (mesh.isInstancedMesh) throw new Error(`has a mesh that is drawn many times by one node (${nameOf(nodeOf(mesh))}), which this page does not pose; export it without EXT_mesh_gpu_instancing`);
   const corners = geometry.index ? Array.from(geometry.index.array) : Array.from({ length: position.count }, (_, i) => i);
-  const part = { node: mesh, positions: numbersOf(position), corners: corners.slice(0, corners.length - (corners.length % 3)), joints: [], bone: null, weight: null };
+  const part = { node: nodeOf(mesh), influences: mesh.morphTargetInfluences ?? [], positions: numbersOf(position), corners: corners.slice(0, corners.length - (corners.length % 3)), joints: [], bone: null, weight: null };
+  const beyond = part.corners.find((v) => !(v < position.count));
+  if (beyond !== undefined) throw new Error(`a mesh (${nameOf(part.node)}) names vertex ${beyond} of ${position.count}; repair the file`);
   part.targets = (geometry.morphAttributes.position ?? []).map(numbersOf);
   if (part.targets.length > 0 && !geometry.morphTargetsRelative) part.targets.forEach((target) => target.forEach((x, i) => { target[i] = x - part.positions[i]; }));
   if (!skeleton || !skinIndex) return part;
@@ -178,7 +186,7 @@ class Model {
     this.nodes = [];  // parents first
     const add = (root) => root.traverse((node) => this.nodes.push(node));
     add(scene);
-    this.parts = this.nodes.filter((node) => node.isMesh).map(partOf);
+    this.parts = this.nodes.filter((node) => node.isMesh).map((mesh) => partOf(mesh, this));
     for (const { joints } of this.parts)
       for (let { node } of joints) {
         while (node.parent) node = node.parent;
@@ -188,8 +196,7 @@ class Model {
     this.atRest = this.nodes.map((node) => [node, node.position.clone(), node.quaternion.clone(), node.scale.clone(), node.morphTargetInfluences?.slice()]);
     this.clips = animations.map((clip, number) => this.clipOf(clip, number));
     this.vertexCount = this.parts.reduce((sum, { positions }) => sum + positions.length / 3, 0);
-    this.names = this.parts.map(({ node }) => nameOf(node) || nameOf(node.parent ?? node));
-    this.nodeName = nameOf;
+    this.names = this.parts.map(({ node }) => this.nameOf(node));
   }
 
   clipOf({ name, tracks }, number) {
@@ -243,9 +250,8 @@ class Model {
 
   skin(worldOf, out) {
     let at = 0;
-    for (const { node, positions, joints, bone, weight, targets } of this.parts) {
+    for (const { node, influences: shares, positions, joints, bone, weight, targets } of this.parts) {
       const own = worldOf(node).elements, maps = joints.map((joint) => new Matrix4().multiplyMatrices(worldOf(joint.node), joint.offset).elements);
-      const shares = node.morphTargetInfluences ?? [];
       for (let v = 0; v < positions.length; v += 3) {
         let x = positions[v], y = positions[v + 1], z = positions[v + 2], moved = false;
         for (let t = 0; t < targets.length; ++t)

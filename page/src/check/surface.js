@@ -1,6 +1,6 @@
 // The surface of a model: all its parts, welded; the names of its places; and what crosses in it at rest.
-import { Joints } from "./events.js";
-import { Mesh, tellApart } from "./mesh.js";
+import { Joints, restDepths } from "./events.js";
+import { Mesh, RestCrossings, tellApart } from "./mesh.js";
 import { weld, weldedTriangles } from "./weld.js";
 
 const PROBES = 32;  // poses in which seams are looked at, spread over all clips
@@ -111,7 +111,7 @@ export class Surface {
     });
   }
 
-  nameOfBone(bone) { return this.model.nodeName(this.bones[bone]) || `bone ${bone}`; }
+  nameOfBone(bone) { return this.model.nameOf(this.bones[bone]) || `bone ${bone}`; }
   boneName(vertex) { return this.bone && this.bone[vertex] >= 0 ? this.nameOfBone(this.bone[vertex]) : null; }
   boneOf(t) {
     if (!this.bone) return -1;
@@ -153,6 +153,6 @@ export class Surface {
     for (let i = 0; i < pairs.length; i += 2) met.push(mesh.pair(pairs[i], pairs[i + 1]));
     if (met.length > MOST_AT_REST) throw new Error(`has ${met.length} pairs of triangles that cross at rest, too many to leave out; repair the surface`);
     const found = met.length > 0 ? this.body.crossings(rest) : { overlaps: [] };
-    this.atRest = { met, found, crossing: Array.from(tellApart(mesh, rest, met, found)) };
+    this.atRest = { met, depths: restDepths(mesh, found), rest: new RestCrossings(mesh, Array.from(tellApart(mesh, rest, met, found)), met) };
   }
 }

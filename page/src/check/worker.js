@@ -83,4 +83,6 @@ async function check({ files, engine }) {
   post("done", {});
 }
 
-onmessage = ({ data }) => check(data).catch((error) => post("refused", { text: error.message || String(error), name: data.files[0].name }));
+// What is no Error of ours is a value of the file that was taken for another.
+const sentence = (error) => (error instanceof TypeError ? `cannot be read (${error.message}); export it again` : error.message || String(error));
+onmessage = ({ data }) => check(data).catch((error) => post("refused", { text: sentence(error), name: data.files[0].name }));
