@@ -119,6 +119,7 @@ class Check {
     if (canvas) elements.getElementById("canvas").replaceWith(canvas);  // browsers hold few, and take long to make one
     byId("viewer").replaceChildren(elements);
     this.viewer = window.cscd = new Viewer(recording);
+    byId("details").textContent = run.header.notes;
     document.body.classList.remove("reading");
     if (this.answered.length < 2) return;
     listClips(this.answered, number);

@@ -235,7 +235,7 @@ export class ClipAnswer {
     if (this.lastPose?.pairs_total > 0) out.push(`Ends crossed: ${many(this.lastPose.pairs_total, "pair")} of triangles cross in its last pose`);
     out.push(`${number(model.fps)} frames a second, ${{ file: "as the file says", keys: "as the keys of the file are spaced", assumed: "because the file does not say" }[model.fpsFrom]}`);
     out.push("Posed by three.js and answered in this page by cscd's library, every answer proven for straight lines between these frames");
-    return out.concat(surface.notes).map((line) => `${line[0].toUpperCase()}${line.slice(1)}.`).join(" ");
+    return out.map((line) => `${line[0].toUpperCase()}${line.slice(1)}.`).join(" ");
   }
 
   // What a page of cscd view holds of the clip: a header, and arrays.

@@ -30,7 +30,7 @@ function probesOf(model) {
 export class Surface {
   constructor(model, name) {
     const raw = rawCorners(model), positions = new Float64Array(3 * model.vertexCount);
-    Object.assign(this, { model, name, clips: model.clips, fps: model.fps, isSequence: model.isSequence === true, notes: [...model.notes] });
+    Object.assign(this, { model, name, clips: model.clips, fps: model.fps, isSequence: model.isSequence === true });
     this.header = { import: { format: model.format, centimetres_per_unit: model.centimetres || null, fps: model.fps, fps_from: model.fpsFrom } };
     if (raw.corners.length === 0) throw new Error("holds no triangles; export it together with its mesh");
     const bound = this.isSequence ? null : model.bound();

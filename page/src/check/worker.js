@@ -61,7 +61,7 @@ async function check({ files, engine }) {
   if (frames > most) throw new Error(`has ${frames.toLocaleString("en")} frames of ${mesh.vertices.toLocaleString("en")} vertices, more than the ${most.toLocaleString("en")} that this page holds; ask cscd query`);
   const title = (clip) => clip.name || (clip.number < 0 ? "one pose" : `clip ${clip.number}`);
   post("read", {
-    header: { schema: "cscd.view/1", name, kind: "model", up: { axis: model.up, because: model.because }, engine_colours: false, thickness: "", texts: surface.texts, true_motion: null, ...surface.header },
+    header: { schema: "cscd.view/1", name, kind: "model", up: { axis: model.up, because: model.because }, engine_colours: false, thickness: "", texts: surface.texts, true_motion: null, notes: model.notes.map((note) => `${note}.`).join(" "), ...surface.header },
     clips: clips.map(title), intervals: clips.reduce((sum, clip) => sum + Math.max(1, clip.frames - 1), 0), passedOver: moving.length > 0 ? model.clips.length - moving.length : 0,
   });
   let done = 0, told = 0;
