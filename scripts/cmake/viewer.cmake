@@ -25,7 +25,7 @@ std::string_view report_page() { return {}; }
   if(NOT NPM OR NOT NODE)
     message(FATAL_ERROR "the viewer needs nodejs and npm; install both, or configure with -DCSCD_VIEWER=OFF")
   endif()
-  file(GLOB sources CONFIGURE_DEPENDS ${page}/*.mjs ${page}/src/*)
+  file(GLOB sources LIST_DIRECTORIES false CONFIGURE_DEPENDS ${page}/*.mjs ${page}/src/*)
   # Packages lie beside the build, so that the sources stay as they are.
   set(packages ${copy}/packages.stamp)
   add_custom_command(OUTPUT ${packages}
