@@ -17,7 +17,7 @@ function unanswered(name, title, { frames, triangles }) {
   for (const key of ["inside_vertex", "inside_depth", "curve_points", "curve_event", "curve_edge", "curve_share"]) arrays[key] = new Uint32Array(0);
   arrays["s0.touched"] = new Uint8Array(n * Math.ceil(triangles / 8));
   const summary = { verdict: "undecided", undecided: 1, touches: 0, intersects_at_start: 0, headline: null, met: [], events: [], first_named: null };
-  return { events: [], arrays, strategy: { name: "the library", answered_by: [""], covers: 0, summary, sentences: [`${name}, ${title}: not answered yet.`], details: "" } };
+  return { events: [], arrays, strategy: { name: "the library", answered_by: [""], covers: 0, summary, sentences: [`${name}, '${title}': not answered yet.`], details: "" } };
 }
 
 class Check {
@@ -86,7 +86,7 @@ class Check {
     if (kind === "frames") {
       const title = run.titles[number];
       run.clips[number] = { title, clip: data.clip, frames: data.arrays, ...unanswered(run.header.name, title, data.clip) };
-      if (number === 0) this.show(0);
+      if (number === 0) this.say("preparing ...", 0), this.show(0);
     }
     if (kind === "progress") this.say(`clip ${number + 1} of ${run.titles.length}, '${run.titles[number]}': frame ${data.interval} of ${run.clips[number].clip.frames - 1}`, data.done / run.intervals);
     if (kind === "answer") Object.assign(run.clips[number], data, { isAnswered: true, strategies: [data.strategy] });

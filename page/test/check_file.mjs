@@ -39,6 +39,13 @@ async function give(paths) {
   return { seconds, json: await page.evaluate(() => window.check.json()), longest: await page.evaluate(() => window.longest) };
 }
 
+// The saved answers hold nothing that `cscd query --json` does not have.
+const schema = JSON.parse(readFileSync(new URL("../../bench/answer/query.schema.json", import.meta.url), "utf8")).definitions;
+function requireKnown(kind, value) {
+  const known = (definition) => [...Object.keys(definition.properties ?? {}), ...(definition.allOf ?? []).flatMap((part) => known(part.$ref ? schema[part.$ref.split("/").at(-1)] : part))];
+  for (const key of Object.keys(value ?? {})) require(known(schema[kind]).includes(key), `the saved answers have a field ${key} of ${kind}, which cscd query does not have`);
+}
+
 const clipsOf = (json) => json.clips ?? [json];
 const countsOf = ({ summary: { clear, touches, intersects_at_start: crosses, events } }) => `${clear} clear, ${touches} touch, ${crosses} cross, ${events.length} events`;
 const deepestOf = ({ summary: { headline } }) => headline?.depth.at_least ?? 0;
@@ -115,6 +122,16 @@ try {
     await page.waitForFunction(() => document.body.className === "", null, { timeout: 300000 });
     const [download] = await Promise.all([page.waitForEvent("download"), page.click("#save")]);
     const saved = JSON.parse(readFileSync(await download.path(), "utf8"));
+    for (const { schema: own, fields_of: whose, ...clip } of clipsOf(saved)) {
+      requireKnown("clip", clip);
+      requireKnown("summary", clip.summary);
+      requireKnown("headline", clip.summary.headline);
+      clip.summary.events.forEach((event) => requireKnown("event", event));
+      for (const { contacts = [], ...interval } of clip.intervals) {
+        requireKnown("interval", interval);
+        contacts.forEach((contact) => requireKnown("contact", contact));
+      }
+    }
     require(saved.schema === "cscd.check/1" && clipsOf(saved).every(({ intervals }) => intervals.length > 0), "the saved answers are not whole");
     if ((await page.locator("#clips option").count()) > 1) {
       const before = await page.textContent("#verdict");
