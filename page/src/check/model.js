@@ -28,8 +28,9 @@ async function reading(read, said = []) {
   console.warn = (...words) => said.push(words.join(" "));
   try {
     return await read();
-  } catch ({ message }) {
-    throw new Error(`cannot be read (${message.replace(/^THREE\.\w+: /, "").replace(/\.$/, "")}); export it again`);
+  } catch (error) {
+    const said = error instanceof TypeError || error instanceof RangeError ? "a value in it is none that three.js expects" : error.message.replace(/^THREE\.\w+: /, "").replace(/\.$/, "");
+    throw new Error(`cannot be read (${said}); export it again, or ask cscd query`);
   } finally {
     console.warn = warn;
   }

@@ -84,5 +84,5 @@ async function check({ files, engine }) {
 }
 
 // What is no Error of ours is a value of the file that was taken for another.
-const sentence = (error) => (error instanceof TypeError ? `cannot be read (${error.message}); export it again` : error.message || String(error));
+const sentence = (error) => (error instanceof TypeError ? "cannot be read (a value in it is of another kind than it should be); export it again, or ask cscd query" : error.message || String(error));
 onmessage = ({ data }) => check(data).catch((error) => post("refused", { text: sentence(error), name: data.files[0].name }));
