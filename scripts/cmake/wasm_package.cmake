@@ -19,6 +19,7 @@ function(cscd_wasm_package path room)
   set(folder ${PROJECT_SOURCE_DIR}/${path})
   set(package ${PROJECT_BINARY_DIR}/js)
   add_executable(cscd_wasm ${folder}/bindings.cpp ${folder}/runtime.cpp ${objects})
+  target_compile_options(cscd_wasm PRIVATE -Oz)
   set_target_properties(cscd_wasm PROPERTIES UNITY_BUILD OFF OUTPUT_NAME cscd SUFFIX .wasm RUNTIME_OUTPUT_DIRECTORY ${package})
   target_link_libraries(cscd_wasm PRIVATE ${room} cscd_flags)
   # A library without main(). Its stack lies below its data, so that an overflow traps.
