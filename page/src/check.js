@@ -1,11 +1,12 @@
 // The page that takes a file: hands it to the worker (check/worker.js), and the viewer what the worker says.
 import { listClips, worstClip } from "./clips.js";
 import { fromBase64, inflate, recordingOf } from "./data.js";
-import { byId } from "./dom.js";
+import { byId, prefersDark, setDark } from "./dom.js";
 import { requireBrowser, Viewer } from "./viewer.js";
 
 const PATIENCE = 60000;  // milliseconds without a word from the worker, after which it is stopped
 
+const pause = () => new Promise((go) => { setTimeout(go); });
 const bytesOf = (id) => inflate(fromBase64(byId(id).textContent));
 
 // An answer about nothing yet, so that the surface can be seen.
@@ -108,16 +109,18 @@ class Check {
     if (this.run === run) document.body.className = "";
   }
 
-  // In two steps, so that no step blocks the page for long.
+  // In steps, so that none blocks the page for long.
   async show(number) {
     const { run } = this, clips = this.answered.length > 0 ? this.answered : run.clips, { clip, frames, arrays, events, rest, strategy } = clips[number];
     const recording = (run.shown = recordingOf({ ...run.header, clip, events, rest, strategies: [strategy] }, { ...frames, ...arrays }));
-    await new Promise((go) => { setTimeout(go); });
+    await pause();
     if (this.run !== run || run.shown !== recording) return;  // another one is wanted by now
     this.viewer?.end();
     const { canvas } = this.viewer?.stage ?? {}, elements = byId("view").content.cloneNode(true);
     if (canvas) elements.getElementById("canvas").replaceWith(canvas);  // browsers hold few, and take long to make one
     byId("viewer").replaceChildren(elements);
+    await pause();
+    if (this.run !== run || run.shown !== recording) return;
     this.viewer = window.cscd = new Viewer(recording);
     byId("details").textContent = run.header.notes;
     document.body.classList.remove("reading");
@@ -142,6 +145,7 @@ class Check {
   }
 }
 
+setDark(prefersDark());
 try {
   requireBrowser();
   window.check = new Check();

@@ -151,11 +151,12 @@ export class Stage {
     this.ended = true;
     this.observer.disconnect();
     this.controls.dispose();
-    this.scene.traverse(({ geometry, material }) => {
+    // Once the next stage has drawn, which then finds the shaders compiled.
+    setTimeout(() => this.scene.traverse(({ geometry, material }) => {
       geometry?.dispose();
       material?.dispose();
       for (const { value } of Object.values(material?.uniforms ?? {})) if (value?.isTexture) value.dispose();
-    });
+    }), 2000);
   }
 
   setUp(axis) {
