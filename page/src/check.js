@@ -41,6 +41,7 @@ class Check {
   // Asks for a file, after a refusal perhaps.
   ask(refusal) {
     this.end();
+    this.run = { clips: [] };  // what is under way is for nobody
     byId("files").value = "";
     byId("refusal").textContent = refusal;
     document.body.className = "asking";
