@@ -4,11 +4,12 @@ import functools
 import json
 import math
 import pathlib
+import time
 
 import bpy
 import numpy as np
 from bpy_extras.io_utils import ImportHelper, axis_conversion
-from mathutils import Vector
+from mathutils import Quaternion, Vector
 
 from . import events as ev
 
@@ -158,7 +159,7 @@ def checking(context, cscd, settings):
         poses = [reader.at_rest()]
         if not len(reader.triangles):
             raise Stop("What is selected has no faces.")
-        wanted = settings.thickness, settings.leave_out_rest
+        wanted = settings.thickness, not settings.count_rest
         while True:
             surface = reader.surface(poses)
             check = yield 0.0, lambda: ev.Check(cscd, surface, poses[0], *wanted)
@@ -199,7 +200,7 @@ def show(scene):
     length = length_in(scene)
     settings.headline = ev.headline(found, length, frames_of(scene), settings.thickness)
     settings.folds = sum(e.at_joint for e in found)
-    shown = [e for e in found if settings.show_folds or not e.at_joint]
+    shown = [e for e in found if settings.count_folds or not e.at_joint]
     forget(scene)
     settings.rows.clear()
     size = max((max(o.dimensions) for o in map(scene.objects.get, Result.objects) if o), default=1.0)
@@ -207,8 +208,11 @@ def show(scene):
         row = settings.rows.add()
         row.name, row.sentence = ev.title(event, length), ev.sentence(event, length, settings.thickness)
         row.first, row.second = event.names
-        row.frame, row.point = math.floor(event.deepest), event.point
-        row.reach = max(6 * max(event.depth, 0.0), 0.3 * size)
+        row.depth = length(event.depth) if event.depth > 0 else ""
+        row.frame, row.point = math.floor(event.deepest + 0.005), event.point
+        if event.lines and (event.depth > 0 or event.touches):
+            row.out = event.lines[-1][1] - event.lines[-1][0]
+        row.reach = max(8 * event.depth, 0.15 * size)
     if shown:
         collection = bpy.data.collections.new(NAME)
         collection[OURS] = True
@@ -216,7 +220,8 @@ def show(scene):
     for event, row in list(zip(shown, settings.rows))[:MOST_SHOWN]:
         scene.timeline_markers.new(row.name, frame=row.frame)[OURS] = True
         if event.lines:
-            collection.objects.link(curves(row, event.lines, 0.002 * size))
+            extent = max(np.ptp(np.concatenate(event.lines), axis=0))
+            collection.objects.link(curves(row, event.lines, min(0.05 * extent, 0.002 * size)))
     if shown and Result.weights:
         add_weights(Result.weights(shown))
 
@@ -251,7 +256,7 @@ def add_weights(weights):
 
 
 def jump(settings, context):
-    """Goes to the frame of the row that is clicked, and brings its point into the middle of all 3D views."""
+    """Goes to the frame of the row that is clicked, and brings its point into the middle of all 3D views, seen from above where the way out leads."""
     if not 0 <= settings.active < len(settings.rows):
         return
     row = settings.rows[settings.active]
@@ -263,6 +268,8 @@ def jump(settings, context):
                 if view.view_perspective == "CAMERA":
                     view.view_perspective = "PERSP"
                 view.view_location, view.view_distance = row.point, row.reach
+                if any(row.out):
+                    view.view_rotation = Vector(row.out).to_track_quat("Z", "Y") @ Quaternion((1, 0, 0), -0.5)
 
 
 def show_again(settings, context):
@@ -271,11 +278,13 @@ def show_again(settings, context):
 
 
 class Row(bpy.types.PropertyGroup):
+    depth: bpy.props.StringProperty()
     sentence: bpy.props.StringProperty()
     first: bpy.props.StringProperty()
     second: bpy.props.StringProperty()
     frame: bpy.props.IntProperty()
     point: bpy.props.FloatVectorProperty()
+    out: bpy.props.FloatVectorProperty()  # the way out, or the direction of a touch
     reach: bpy.props.FloatProperty()
 
 
@@ -283,19 +292,19 @@ class Settings(bpy.types.PropertyGroup):
     thickness: bpy.props.FloatProperty(
         name="Thickness", unit="LENGTH", min=0.0, precision=4, step=0.1,
         description="What comes nearer than this counts as a touch, apart from what is that near at rest; 0 is touching")
-    leave_out_rest: bpy.props.BoolProperty(
-        name="Leave out what crosses at rest", default=True,
-        description="Eyes in sockets, teeth in gums, clothes in skin: what crosses where the armature is in its rest position")
-    show_folds: bpy.props.BoolProperty(
-        name="Show folds at joints", default=False, update=show_again,
-        description="List what neighbouring bones do to each other as well, as long as it is less deep than a tenth of the limb's girth")
+    count_rest: bpy.props.BoolProperty(
+        name="Crossings at rest, too", default=False,
+        description="Count eyes in sockets, teeth in gums, clothes in skin: what crosses where the armature is in its rest position")
+    count_folds: bpy.props.BoolProperty(
+        name="Folds at joints, too", default=False, update=show_again,
+        description="List what neighbouring bones do to each other less deep than a tenth of the limb's girth")
     headline: bpy.props.StringProperty()
     note: bpy.props.StringProperty()
     folds: bpy.props.IntProperty()
     rows: bpy.props.CollectionProperty(type=Row)
     active: bpy.props.IntProperty(update=jump)
     ignored: bpy.props.CollectionProperty(type=Row)
-    done: bpy.props.FloatProperty(name="Done", subtype="PERCENTAGE", min=0, max=100, default=-1)
+    done: bpy.props.FloatProperty(name="Done", subtype="PERCENTAGE", min=0, max=100, precision=0)
     running: bpy.props.BoolProperty(options={"SKIP_SAVE"})
 
 
@@ -319,7 +328,7 @@ class Check(bpy.types.Operator):
         except StopIteration:
             show(context.scene)
             return {"FINISHED"}
-        except (Stop, ValueError) as error:
+        except (Stop, ValueError, MemoryError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
 
@@ -338,20 +347,24 @@ class Check(bpy.types.Operator):
         settings = context.scene.cscd_self_collision
         if event.type == "ESC" or not settings.running:
             return self.end(context, "Cancelled.")
-        if event.type != "TIMER" or (self.answer is not None and not self.answer.done()):
+        if event.type != "TIMER":
             return {"PASS_THROUGH"}
+        until = time.monotonic() + 0.1  # each pass draws all windows anew
         try:
-            share, job = next(self.steps) if self.answer is None else self.steps.send(self.answer.result())
-            self.answer = self.worker.submit(job)
-            settings.done = 100 * share
-            redraw(context)
-            return {"PASS_THROUGH"}
+            while (left := until - time.monotonic()) > 0:
+                share, job = self.steps.send(self.answer and self.answer.result(left))
+                self.answer = self.worker.submit(job)
+                settings.done = 100 * share
+        except concurrent.futures.TimeoutError:
+            pass
         except StopIteration:
             return self.end(context)
         except ReferenceError:
             return self.end(context, "The scene was changed while it was checked. Check again.")
-        except (Stop, ValueError) as error:
+        except (Stop, ValueError, MemoryError) as error:
             return self.end(context, str(error))
+        redraw(context)
+        return {"PASS_THROUGH"}
 
     def end(self, context, why=""):
         self.steps.close()
@@ -480,17 +493,18 @@ class Rows(bpy.types.UIList):
     bl_idname = "CSCD_UL_rows"
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_property, index=0, flag=0):
-        line = layout.row(align=True)
-        line.label(text=item.name)
-        right = line.row(align=True)
-        right.alignment = "RIGHT"
-        right.label(text=str(item.frame))
-        right.operator(Ignore.bl_idname, text="", icon="HIDE_ON", emboss=False).row = index
+        column = layout.column(align=True)
+        line = column.row(align=True)
+        line.label(text=item.name.partition(":")[0])
+        line.operator(Ignore.bl_idname, text="", icon="HIDE_ON", emboss=False).row = index
+        line = column.row()
+        line.active = False
+        line.label(text=", ".join(filter(None, (item.depth, f"frame {item.frame}"))))
 
 
 def write(layout, context, text, icon="NONE"):
     """Labels of a text, with line breaks where the sidebar ends."""
-    wide = max(20, int(context.region.width / (7 * context.preferences.system.ui_scale)) - 4)
+    wide = max(16, int(context.region.width / (7 * context.preferences.system.ui_scale)) - (4 if icon == "NONE" else 7))
     line, column = "", layout.column(align=True)
     for word in [*text.split(), None]:
         if line and (word is None or len(line) + len(word) >= wide):
@@ -519,15 +533,16 @@ class Panel(bpy.types.Panel):
         column = layout.column()
         column.enabled = not settings.running
         column.prop(settings, "thickness")
-        column.prop(settings, "leave_out_rest")
-        column.prop(settings, "show_folds")
+        column.use_property_split = False
+        column.prop(settings, "count_rest")
+        column.prop(settings, "count_folds")
         if settings.headline:
-            write(layout.box(), context, settings.headline, "INFO")
+            write(layout.box(), context, settings.headline)
         if settings.rows:
-            layout.template_list(Rows.bl_idname, "", settings, "rows", settings, "active", rows=6)
-            if 0 <= settings.active < len(settings.rows):
+            layout.template_list(Rows.bl_idname, "", settings, "rows", settings, "active", rows=4)
+            if 0 < settings.active < len(settings.rows):  # the headline says the first
                 write(layout, context, settings.rows[settings.active].sentence)
-        if settings.folds and not settings.show_folds:
+        if settings.folds and not settings.count_folds:
             write(layout, context, f"{settings.folds} fold{'s' if settings.folds > 1 else ''} at joints not listed")
         if settings.note:
             write(layout, context, settings.note)
@@ -535,7 +550,8 @@ class Panel(bpy.types.Panel):
             line = layout.row(align=True)
             line.label(text=f"Ignored: {pair.first}, {pair.second}")
             line.operator(Heed.bl_idname, text="", icon="X", emboss=False).pair = i
-        line = layout.row(align=True)
+        line = layout.column(align=True)
+        line.enabled = not settings.running
         line.operator(LoadAnswer.bl_idname, text="Load answer", icon="FILE_FOLDER")
         line.operator(Clear.bl_idname, icon="TRASH")
 

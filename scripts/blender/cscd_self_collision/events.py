@@ -29,7 +29,7 @@ class Event:
     depth: float = 0  # 0 where none is known
     bound: float = 0  # what no point exceeds
     at_rest: float | None = None  # how deep the two lie in each other at rest
-    touches: bool = False  # between frames, or at their ends; nothing is known to lie in anything
+    touches: bool = False  # the two cross in no frame
     at_joint: bool = False
     point: np.ndarray = field(default_factory=lambda: np.zeros(3))
     lines: list[np.ndarray] = field(default_factory=list)  # [points, 3] each: curves, and the way out of the deepest point
@@ -198,6 +198,7 @@ class Check:
         self.rest = RestCrossings(surface, self._body.crossings(rest).overlaps if leave_out_rest else [])
         self._close_at_rest = self._keys(self._body.all_contacts(rest, rest).contacts) if thickness > 0 else set()
         self._events, self._touches = [], {}
+        self._crossed = set()  # pairs of places that cross anywhere, the smaller number first
         self._by_vertex, self._by_pair, self._going_on = {}, {}, []
         self._last = None
 
@@ -225,6 +226,7 @@ class Check:
             if not pairs:  # a piece touches a wall from within, which the contacts say
                 continue
             marks = [(v, self._other(overlap, region)) for region in overlap.regions for v in region.vertices.tolist()]
+            self._crossed.update(tuple(sorted(both)) for both in self.surface.place[np.array(pairs)].tolist())
             places = self._places(overlap)
             number = self._continued(marks, pairs, places)
             if number is None:
@@ -302,8 +304,7 @@ class Check:
                 event.lines.append(np.array([contact.point - along, contact.point + along]))
 
     def events(self):
-        met = {places for event in self._events for places in (event.places, event.places[::-1])}
-        events = self._events + [event for places, event in self._touches.items() if places not in met]
+        events = self._events + [event for places, event in self._touches.items() if places not in self._crossed]
         for event in events:
             event.names = tuple(self.surface.names[place] for place in event.places)
             event.at_joint = self.surface.is_fold(event)
@@ -382,19 +383,22 @@ def from_answer(answer, turn):
         if one["out"]:
             event.lines.append(np.array([event.point, turn @ (point + np.array(one["out"]))]))
         events.append(event)
-    met = {frozenset(event.names): event for event in events}
-    folds = [{met["first"], met["second"]} for met in answer["summary"]["met"] if met["at_joint"]]
+    met = {frozenset((met["first"], met["second"])): met for met in answer["summary"]["met"]}
+    touches = {}
     for interval in answer["intervals"]:
         for contact in interval["contacts"]:
             names = tuple(contact[side]["bone"] or contact[side]["part"] for side in ("first", "second"))
-            moment, point = interval["frame"] + contact["time"], turn @ np.array(contact["point"])
-            event = met.setdefault(frozenset(names), Event((0, 0), names, moment, moment, moment, touches=True, point=point,
-                                                           at_joint=set(names) in folds))
-            event.ends = moment if event.touches else event.ends
+            both, moment = frozenset(names), interval["frame"] + contact["time"]
+            if "event" in contact:
+                event = events[contact["event"]]
+            elif both in met and met[both]["start_pairs"] == 0:  # the two cross in no frame
+                event = touches.setdefault(both, Event((0, 0), names, moment, moment, moment, touches=True,
+                                                       at_joint=met[both]["at_joint"], point=turn @ np.array(contact["point"])))
+                event.ends = moment
+            else:
+                continue
             event.vertices.update(dict.fromkeys(contact["vertices"], 0.0))
-            if event.begins == moment:
-                events.append(event)
-    return in_order(events)
+    return in_order([*events, *touches.values()])
 
 
 def in_order(events):

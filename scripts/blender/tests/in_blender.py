@@ -80,7 +80,7 @@ bpy.ops.cscd_self_collision.ignore(row=0)
 assert all({r.first, r.second} != pair for r in settings.rows) and settings.ignored, "an ignored pair is listed"
 bpy.ops.cscd_self_collision.heed(pair=0)
 same(len(settings.rows), len(shown), "rows after the pair counts again")
-settings.show_folds = True
+settings.count_folds = True
 same(len(settings.rows), len(found), "rows with folds")
 settings.thickness = 0.004 * max(mesh.dimensions)
 bpy.ops.cscd_self_collision.check()
