@@ -105,7 +105,8 @@ class Reader:
             weights = [(g.weight, -of_group[g.group]) for g in v.groups if of_group.get(g.group) is not None and g.weight > 0]
             if weights:
                 bone[v.index] = -max(weights)[1]
-        return triangles.reshape(-1, 3), bone
+        mirrored = thing.matrix_world.determinant() < 0
+        return triangles.reshape(-1, 3)[:, ::-1 if mirrored else 1], bone
 
     def _read_bones(self):
         """Numbers the bones that have vertex groups, each with the nearest of them above it."""
@@ -125,9 +126,9 @@ def frames_of(scene):
 
 
 def meshes_of(context):
-    """The selected meshes, and the visible meshes that selected armatures move."""
+    """The selected meshes, and the visible meshes that selected armatures move or carry."""
     chosen = set(context.selected_objects)
-    return [o for o in context.visible_objects if o.type == "MESH" and OURS not in o and (o in chosen or o.find_armature() in chosen)]
+    return [o for o in context.visible_objects if o.type == "MESH" and chosen & {o, o.find_armature(), o.parent}]
 
 
 def length_in(scene):
@@ -138,7 +139,7 @@ def length_in(scene):
 class Result:
     """What the last check or answer found, for what is shown of it to be made anew. Scene and objects by name: undo replaces them."""
     scene = events = weights = None  # weights: a function of events that returns those of all vertices, object after object
-    objects, counts = (), ()
+    objects, counts, frames, thickness = (), (), (0, 0), 0.0
 
 
 @bpy.app.handlers.persistent
@@ -171,7 +172,7 @@ def checking(context, cscd, settings):
                 yield (frame - first) / (last - first + 1), lambda: check.add(frame, pose)
             else:
                 break
-        Result.scene, Result.events = scene.name, check.events()
+        Result.scene, Result.events, Result.frames, Result.thickness = scene.name, check.events(), (first, last), check.thickness
         Result.objects, Result.counts = [o.name for o in objects], reader.counts
         Result.weights = lambda events: check.weights(events, len(poses[0]))
         settings.note = "What crosses at rest is left out." if len(check.rest) else ""
@@ -198,7 +199,7 @@ def show(scene):
     ignored = {frozenset((pair.first, pair.second)) for pair in settings.ignored}
     found = [e for e in Result.events if frozenset(e.names) not in ignored]
     length = length_in(scene)
-    settings.headline = ev.headline(found, length, frames_of(scene), settings.thickness)
+    settings.headline = ev.headline(found, length, Result.frames, Result.thickness)
     settings.folds = sum(e.at_joint for e in found)
     shown = [e for e in found if settings.count_folds or not e.at_joint]
     forget(scene)
@@ -206,7 +207,7 @@ def show(scene):
     size = max((max(o.dimensions) for o in map(scene.objects.get, Result.objects) if o), default=1.0)
     for event in shown:
         row = settings.rows.add()
-        row.name, row.sentence = ev.title(event, length), ev.sentence(event, length, settings.thickness)
+        row.name, row.sentence = ev.title(event, length), ev.sentence(event, length, Result.thickness)
         row.first, row.second = event.names
         row.depth = length(event.depth) if event.depth > 0 else ""
         row.frame, row.point = math.floor(event.deepest + 0.005), event.point
@@ -250,13 +251,13 @@ def add_weights(weights):
         own, start, thing = weights[start:start + count], start + count, bpy.data.objects.get(name)
         if not thing or count != len(thing.data.vertices) or thing.library or thing.mode == "EDIT":
             continue  # modifiers make other vertices than those that a group can hold
-        group = thing.vertex_groups.new(name=NAME)
+        group = thing.vertex_groups.get(NAME) or thing.vertex_groups.new(name=NAME)  # objects may share a mesh
         for v in np.flatnonzero(own).tolist():
             group.add([v], own[v], "REPLACE")
 
 
 def jump(settings, context):
-    """Goes to the frame of the row that is clicked, and brings its point into the middle of all 3D views, seen from above where the way out leads."""
+    """Goes to the frame of the row that is clicked, and turns all 3D views to its point, seen from above where the way out leads."""
     if not 0 <= settings.active < len(settings.rows):
         return
     row = settings.rows[settings.active]
@@ -466,11 +467,11 @@ class LoadAnswer(bpy.types.Operator, ImportHelper):
         scene = context.scene
         try:
             answer = json.loads(path.read_text())
-            told = answer.get("import") or {}
+            told = (isinstance(answer, dict) and answer.get("import")) or {}
             up = (told.get("up") or "y").upper() if self.up == "FILE" else self.up
-            turn = np.array(axis_conversion(from_forward="-Z" if "Y" in up else "Y", from_up=up, to_forward="Y", to_up="Z"))
-            found = ev.from_answer(answer, turn * ((told.get("centimetres_per_unit") or 100) / 100 / scene.unit_settings.scale_length))
-        except (OSError, ValueError, KeyError, AttributeError) as error:
+            scale = (told.get("centimetres_per_unit") or 100) / 100 / scene.unit_settings.scale_length
+            found = ev.from_answer(answer, scale * np.array(axis_conversion(from_forward="-Z" if "Y" in up else "Y", from_up=up)))
+        except (OSError, ValueError, KeyError) as error:
             self.report({"ERROR"}, f"{path.name}: {error}")
             return {"CANCELLED"}
         rate = scene.render.fps / scene.render.fps_base / (told.get("fps") or scene.render.fps)
@@ -478,6 +479,8 @@ class LoadAnswer(bpy.types.Operator, ImportHelper):
         for event in found:
             event.begins, event.ends, event.deepest = (begin + rate * f for f in (event.begins, event.ends, event.deepest))
         Result.scene, Result.events, Result.weights = scene.name, found, None
+        Result.thickness = scale * answer.get("thickness", {}).get("length", 0.0)
+        Result.frames = tuple(begin + rate * interval["frame"] for interval in (answer["intervals"][0], answer["intervals"][-1]))
         Result.objects = [o.name for o in meshes_of(context)]
         cache = path.parent / answer["input"]
         if cache.suffix in (".pc2", ".mdd") and cache.with_suffix(".obj").exists() and told.get("clips"):

@@ -361,7 +361,7 @@ def headline(events, length, frames, thickness=0.0):
     if shown:
         return sentence(max(deep, key=lambda e: e.excess) if deep else shown[0], length, thickness) + "."
     what = f"comes within {length(thickness)} of itself" if thickness > 0 else "touches itself"
-    return f"Nothing {what} in frames {frames[0]} to {frames[1]}{', apart from folds at joints' if events else ''}."
+    return f"Nothing {what} in frames {number(frames[0])} to {number(frames[1])}{', apart from folds at joints' if events else ''}."
 
 
 def from_answer(answer, turn):
