@@ -1,6 +1,6 @@
 // Reads a model file with three.js' loaders, and says where each vertex of its parts is in each frame of each clip. Everything is
 // computed in double precision: three.js' own posing rounds to single precision, and `cscd` does not.
-import { LoadingManager, Matrix4, PropertyBinding, Quaternion, Texture, Vector3 } from "three";
+import { InterpolateDiscrete, LoadingManager, Matrix4, PropertyBinding, Quaternion, Texture, Vector3 } from "three";
 import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
 import { FBXLoader } from "three/examples/jsm/loaders/FBXLoader.js";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
@@ -205,7 +205,8 @@ class Model {
     const start = long.length ? Math.min(...long.map(({ times }) => times[0])) : 0;
     const seconds = long.length ? Math.max(...long.map(({ times }) => times.at(-1))) - start : 0;
     const frames = framesOf(seconds, this.fps), first = start * this.fps, whole = Math.round(first);
-    const drives = tracks.map((track) => ({ to: PropertyBinding.create(this.scene, track.name), from: track.createInterpolant(new Float64Array(track.getValueSize())) }));
+    const drives = tracks.map((track) => ({ to: PropertyBinding.create(this.scene, track.name), from: track.createInterpolant(new Float64Array(track.getValueSize())),
+      late: track.getInterpolation() === InterpolateDiscrete ? 1 + 2 ** -23 : 1 }));  // a jump's time of single precision may lie behind its frame
     const second = (frame) => (frame + 1 >= frames ? seconds : frame / this.fps);
     return { name, number, start, seconds, frames, drives, second, firstFrame: Math.abs(first - whole) <= 1e-3 ? whole : first };
   }
@@ -217,7 +218,7 @@ class Model {
       node.scale.copy(scale);
       influences?.forEach((x, i) => { node.morphTargetInfluences[i] = x; });
     }
-    for (const { to, from } of drives) to.setValue(from.evaluate(time), 0);
+    for (const { to, from, late } of drives) to.setValue(from.evaluate(late * time), 0);
     for (const node of this.nodes) {
       node.quaternion.normalize();
       node.updateMatrix();
