@@ -98,7 +98,7 @@ export class Timeline {
     context.font = "11px system-ui, sans-serif";
     const count = strategy.verdict.reduce((a, _, i) => Math.max(a, strategy.contacts[i] + strategy.start_pairs[i]), 0);
     const crosses = strategy.start_pairs.some((pairs) => pairs > 0);
-    if (count > 0) this.label(context, many(count, strategy.close ? "close pair" : "contact") + (crosses ? " and crossings" : ""), 1, top, colour("--soft"));
+    if (count > 0) this.label(context, many(count, strategy.close ? "close pair" : "contact") + (crosses ? " and crossings" : ""), 1, top, colour("--text"));
     this.drawDepth(context, x, top, bottom, colour("--text"));
     context.fillStyle = colour("--text");
     for (const i of Timeline.worst(strategy)) {

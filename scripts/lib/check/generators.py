@@ -1,7 +1,7 @@
 """Builds the library and the whole project with each of CMake's generators, with a stand-in for the compiler, from a path with a blank.
 
   scripts/check generators            Unix Makefiles, Ninja and Ninja Multi-Config build the library alone; Makefiles, which cmake takes where none
-                                      is named, also the whole project, and one that takes the library by add_subdirectory and by FetchContent
+                                      is named, also the whole project without its tests, and one that takes the library by add_subdirectory and by FetchContent
   scripts/check generators --all      each of them builds all of that, but for the whole project by Ninja, which scripts/test uses
   scripts/check generators --real     the library alone by each generator with the compiler itself: a quarter of an hour each on 2 idle cores
 
@@ -73,8 +73,9 @@ def main():
             results = [("the library alone", built(environment, generator, tree, ["-DCSCD_LIBRARY_ONLY=ON"], LIBRARY))]
             is_usual = generator == GENERATORS[0]
             if not real and (is_usual or options.all and generator != "Ninja"):
-                results.append(("the whole project", built(environment, generator, tree, [],
-                                                           (*LIBRARY, "cscd", "cscd-avx2", "cscd-import", "library_test"))))
+                tests = ("library_test",) if options.all else ()
+                results.append(("the whole project", built(environment, generator, tree, [] if tests else ["-DBUILD_TESTING=OFF"],
+                                                           (*LIBRARY, "cscd", "cscd-avx2", "cscd-import", *tests))))
             release = ["-DCMAKE_DEFAULT_BUILD_TYPE=Release"] if "Multi" in generator else []  # what a project of a user's own builds
             for way, takes in WAYS.items() if not real and (is_usual or options.all) else []:
                 (work / "outer" / "CMakeLists.txt").write_text(OUTER.format(takes=takes))
