@@ -253,8 +253,11 @@ std::string step_text(double ratio) {
   return ratio < 1 ? figure_text(1 / ratio) + " times faster" : figure_text(ratio) + " times slower";
 }
 
+// A speedup changes where either of its rows does.
 std::string step_text(const Course& course, const ChangePoint& change) {
-  return step_text(is_speedup(course) ? 1 / change.ratio : change.ratio);
+  if (!is_speedup(course)) return step_text(change.ratio);
+  return change.ratio < 1 ? figure_text(1 / change.ratio) + " times less"
+                          : figure_text(change.ratio) + " times more";
 }
 
 // How counters differ from those of the commit before, where both counted the same intervals: "bvot +1.2 %".

@@ -69,8 +69,8 @@ void add_history(CLI::App& app) {
       "An entry is one small JSON file a commit and kind of machine, and is never rewritten. A change of\n"
       "level is a commit from which on a row is faster or slower. Such commits are found exactly, as the\n"
       "segments that fit the logarithms best when each of them costs a fixed amount (optimal partitioning).\n"
-      "A speedup is a ratio within one run, over base or else drvbc, so it goes on from machine to machine;\n"
-      "times are those of one kind of machine.");
+      "A speedup is a ratio within one run, over base or else drvbc. So it goes on from machine to machine,\n"
+      "and changes where either row does; times are those of one kind of machine.");
   command->add_option("folder", options->folder, "the folder of the entries")->capture_default_str();
   command->add_option("--machine", options->choice.machine, "of this kind of machine alone: a folder's name");
   command->add_option("--scene", options->choice.scene, "of this scene alone");

@@ -206,7 +206,7 @@ TEST(History, FindsALossOfSpeedupOverMachines) {
   const std::string text = speedups_text(courses);
   EXPECT_TRUE(says(text, "8 commits on 2 kinds of machine\n")) << text;
   EXPECT_TRUE(says(text, "swift over base: hand 10* to 9.")) << text;
-  EXPECT_TRUE(says(text, "\n  from 6666666666 on: hand 1.03 times slower\n")) << text;
+  EXPECT_TRUE(says(text, "\n  from 6666666666 on: hand 1.03 times less\n")) << text;
   EXPECT_TRUE(says(text, "\n  from 7777777777 on: hand 1 counter\n")) << text;
   EXPECT_TRUE(says(courses_text(courses, true, false), "  <- bvot +0.1 %"));
   EXPECT_TRUE(says(courses_text(courses, true, false), " times* [")) << courses_text(courses, true, false);
