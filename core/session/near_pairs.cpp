@@ -5,36 +5,39 @@
 #include <limits>
 
 #include "core/base/rounding.h"
-#include "core/detect/carried_pairs.h"
 #include "core/detect/compose.h"
-#include "core/detect/contact_geometry.h"
-#include "core/detect/filter_block.h"
-#include "core/geometry/nearest_points.h"
+#include "core/geometry/simd_doubles.h"
 #include "core/mesh/mean_edge.h"
 
 namespace cscd {
 namespace {
 
-// How far a list reaches beyond the thickness, in mean edges: no farther than neighbours on the surface, of
-// which there are many; less at first, until it is known how many pairs that are.
-constexpr double kMostReach = 0.5, kFirstReach = 0.25;
-// A list is made to last for twice as many steps as the one before has covered, at least for the first
-// number. It is not made where it would last for fewer than the second.
-constexpr std::size_t kFirstSteps = 16;
-constexpr double kLeastSteps = 3;
-// A list holds the nearest pairs: at least the number below, at most as many as there are triangles, and in
-// between what takes a few times as long to find as a strategy took for a step. That is as many as it tested
-// pairs of triangles, and one for so many overlap tests. The next list reaches no farther than one that was
-// cut short. After one that holds less than this share of what it may hold, it reaches farther, by the
-// factor.
-constexpr double kOverlapTests = 32, kFew = 0.5;
-constexpr std::size_t kLeastMany = 1024;
-constexpr double kWider = 2;
-// So many small steps go by without a list after one that has covered too few, and after several such lists.
-constexpr std::size_t kFirstWait = 8, kLongestWait = 256;
-constexpr double kFarShorter = 4;
+// How far an anchor reaches beyond the thickness, in mean edges: not as far as most neighbours on the
+// surface, of which there are many, so for the first anchor at most the height that all but one in so many
+// triangles exceed. Lists reach at most this share of that; the rest is for patches that bend.
+constexpr double kMostReach = 0.5, kOfLists = 0.5;
+constexpr std::size_t kFewLow = 100;
+// A list is made to last for so many steps.
+constexpr double kSteps = 8;
 // Steps in which nothing moves need no room; what comes after them does, at least this share of the most.
 constexpr double kLeastRoom = 0.0625;
+// An anchor holds the nearest pairs: at most as many as there are triangles, or as many as what a strategy
+// does in a step, and at least one for so many triangles, or the number below. The next anchor reaches no
+// farther than one that was cut short. After one that holds less than this share of what it may hold, it
+// reaches farther, by the factor.
+constexpr std::size_t kTrianglesForOne = 8, kLeastMany = 1024;
+constexpr double kFew = 0.5, kFarther = 2;
+// The work of a strategy is counted in pairs of triangles: those that it tests, one for so many overlap
+// tests, and one for so many triangles that it looks at. To cut the surface into patches takes about as long
+// as a few times as many pairs as there are triangles. That waits until lists have spared as many as there
+// are.
+constexpr std::size_t kOverlapTests = 32, kLookedAt = 16;
+// Pairs are looked at because patches have bent until that takes this share of what an anchor takes.
+constexpr double kBent = 0.5;
+// So many small steps go by without an anchor after one that has spared less than it took, and after several
+// of these; fewer where steps are so many times shorter.
+constexpr std::size_t kFirstWait = 8, kLongestWait = 256;
+constexpr double kFarShorter = 4;
 constexpr std::size_t kSampled = 64;
 // Squares of lengths below this underflow.
 constexpr double kTiny = 0x1p-480;
@@ -53,17 +56,55 @@ Vec3 mean_displacement(std::span<const Vec3> from, std::span<const Vec3> to,
   return sum / static_cast<double>(sample.size());
 }
 
-// The distance of what two triangles carry, in a pose, is at least this.
-double least_distance(const TriangleMesh& mesh, std::span<const Vec3> pose, const CarriedPairs& carried) {
-  double least = kInfinite;
-  for_each_carried(mesh, carried, [&](const FeaturePair& pair) {
-    const auto [p, q, r, s] = vertices_of(mesh, pair);
-    const std::array<Vec3, 4> points{pose[+p], pose[+q], pose[+r], pose[+s]};
-    const bool is_face = pair.kind == FeaturePair::Kind::vertex_face;
-    const Nearest nearest = is_face ? nearest_of_vertex_face(points) : nearest_of_edges(points);
-    least = std::min(least, distance_bounds(points, is_face ? 1 : 2, nearest.way).low);
-  });
-  return least;
+// The least and the largest displacement of all vertices along each axis.
+struct Displacements {
+  Vec3 low, high;
+};
+Displacements displacements(std::span<const Vec3> from, std::span<const Vec3> to) {
+  Displacements out{to[0] - from[0], to[0] - from[0]};
+  const auto take = [&](const Vec3& d) { out.low = out.low.cwiseMin(d), out.high = out.high.cwiseMax(d); };
+  // Eight vertices are three times eight numbers.
+  const std::size_t whole = from.size() / kLanes;
+  if (whole > 0) {
+    Lane8 low[3], high[3];
+    for (std::size_t i = 0; i < whole; ++i)
+      for (std::size_t r = 0; r < 3; ++r) {
+        const std::size_t at = 3 * kLanes * i + kLanes * r;
+        const Lane8 d = loaded<Lane8>(to[0].data() + at) - loaded<Lane8>(from[0].data() + at);
+        low[r] = i == 0 ? d : smaller(low[r], d), high[r] = i == 0 ? d : larger(high[r], d);
+      }
+    const auto take_all = [&](const Lane8(&rows)[3]) {
+      double numbers[3 * kLanes];
+      for (std::size_t r = 0; r < 3; ++r) store(rows[r], numbers + kLanes * r);
+      for (std::size_t v = 0; v < kLanes; ++v)
+        take(Vec3(numbers[3 * v], numbers[3 * v + 1], numbers[3 * v + 2]));
+    };
+    take_all(low), take_all(high);
+  }
+  for (std::size_t v = kLanes * whole; v < from.size(); ++v) take(to[v] - from[v]);
+  return out;
+}
+
+// The largest displacement, less a shift.
+double longest(std::span<const Vec3> from, std::span<const Vec3> to, const Vec3& shift) {
+  double squared = 0;
+  for (std::size_t v = 0; v < from.size(); ++v)
+    squared = std::max(squared, (to[v] - from[v] - shift).squaredNorm());
+  return std::sqrt(squared);
+}
+
+// All but few triangles are higher than this. Neighbours that are not would be listed for each other.
+double low_height(const TriangleMesh& mesh, std::span<const Vec3> pose) {
+  std::vector<double> height(mesh.triangle_count());
+  for (std::size_t t = 0; t < height.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles()[t];
+    const Vec3 p = pose[+b] - pose[+a], q = pose[+c] - pose[+b], r = pose[+a] - pose[+c];
+    const double longest = std::sqrt(std::max({p.squaredNorm(), q.squaredNorm(), r.squaredNorm()}));
+    height[t] = longest > 0 ? p.cross(q).norm() / longest : 0;
+  }
+  const auto low = height.begin() + static_cast<std::ptrdiff_t>(height.size() / kFewLow);
+  std::ranges::nth_element(height, low);
+  return *low;
 }
 
 class NearCuller : public Culler {
@@ -84,51 +125,14 @@ class NearCuller : public Culler {
 
 }  // namespace
 
-// Takes what is within the reach in a pose. Where that is more than a list holds, gives up the half that is
-// farthest, and reaches less far from then on.
-class NearPairs::Collector : public TrianglePairSink {
- public:
-  Collector(const TriangleMesh& mesh, std::span<const Vec3> pose, std::size_t most, double reach,
-            std::vector<Near>& out)
-      : mesh_(mesh), pose_(pose), most_(most), reach_(reach), out_(out) {}
-  // What was passed on and is not in the list is farther apart than this.
-  double reach() const { return reach_; }
-
- private:
-  void take(const std::vector<TrianglePair>& block) override {
-    const Motion rest(pose_, pose_);
-    for (std::size_t first = 0; first < block.size(); first += kLanes16) {
-      const auto pairs = std::span(block).subspan(first, std::min(kLanes16, block.size() - first));
-      const auto before = no_contact_before(mesh_, rest, pairs, reach_);
-      for (std::size_t i = 0; i < pairs.size(); ++i) {
-        if (before[i] > 1) continue;
-        const Triangle &a = mesh_.corners(pairs[i].a), &b = mesh_.corners(pairs[i].b);
-        const CarriedPlaces near = not_farther_than(reach_, rest, a, b, carried_by(a, b));
-        if (near == 0) continue;
-        const double low = least_distance(mesh_, pose_, {pairs[i], near});
-        if (low <= reach_) out_.push_back({low, pairs[i]});
-      }
-      if (out_.size() > most_) reach_less_far();
-      if (closed()) return;
-    }
-  }
-  void reach_less_far() {
-    const auto middle = out_.begin() + static_cast<std::ptrdiff_t>(most_ / 2);
-    std::ranges::nth_element(out_, middle, {}, &Near::low);
-    reach_ = middle->low;
-    std::erase_if(out_, [&](const Near& near) { return near.low > reach_; });
-    if (out_.size() > most_ || !(reach_ > 0)) close();
-  }
-
-  const TriangleMesh& mesh_;
-  std::span<const Vec3> pose_;
-  std::size_t most_;
-  double reach_;
-  std::vector<Near>& out_;
-};
-
 NearPairs::NearPairs(const TriangleMesh& mesh, std::span<const Vec3> reference, const Thickness& thickness)
-    : mesh_(mesh), thickness_(thickness), edge_(mean_edge(mesh, reference)), most_room_(kFirstReach * edge_) {
+    : mesh_(mesh),
+      reference_(reference),
+      thickness_(thickness),
+      edge_(mean_edge(mesh, reference)),
+      most_room_(kMostReach * edge_) {
+  most_room_ =
+      std::clamp(low_height(mesh, reference) - thickness.largest(), kLeastRoom * most_room_, most_room_);
   const std::size_t count = std::min(kSampled, mesh.vertex_count());
   for (std::size_t i = 0; i < count; ++i) sample_.push_back(i * mesh.vertex_count() / count);
 }
@@ -144,85 +148,117 @@ double NearPairs::sampled_length(const Motion& motion) const {
 }
 
 double NearPairs::moved(const Motion& motion, std::span<const Vec3> from, double enough) const {
-  constexpr std::size_t kBlock = 1024;
-  double error = 0;  // of differences, whose roundings are shares of what they are made of
-  double longest = 0;
-  for (std::size_t end = 0; end < 2; ++end) {
-    const std::span<const Vec3> to = end == 0 ? motion.start() : motion.end();
-    const Vec3 shift = mean_displacement(from, to, sample_);
-    Vec3 largest = Vec3::Zero();
-    for (std::size_t first = 0; first < from.size(); first += kBlock) {
-      const std::size_t last = std::min(first + kBlock, from.size());
-      for (std::size_t v = first; v < last; ++v) {
-        const Vec3 displacement = to[v] - from[v];
-        largest = largest.cwiseMax(displacement.cwiseAbs());
-        longest = std::max(longest, (displacement - shift).squaredNorm());
-      }
-      if (!(std::sqrt(longest) <= enough)) return kInfinite;
-    }
-    error = std::max(error, 4 * kUnitRoundoff * (largest.maxCoeff() + shift.cwiseAbs().maxCoeff()));
+  double most = 0;
+  for (const std::span<const Vec3> to : {motion.start(), motion.end()}) {
+    const Displacements all = displacements(from, to);
+    const Vec3 middle = all.low / 2 + all.high / 2, half = all.high / 2 - all.low / 2;
+    // The roundings of differences are shares of what they are made of.
+    const double error = 8 * kUnitRoundoff * all.low.cwiseAbs().cwiseMax(all.high.cwiseAbs()).maxCoeff();
+    double bound = rounded_up(half.norm() + error);
+    if (!(bound <= enough)) bound = rounded_up(longest(from, to, middle) + error);
+    if (!(bound <= enough)) return kInfinite;
+    most = std::max(most, bound);
   }
-  const double bound = rounded_up(std::sqrt(longest) + error);
-  return bound <= enough ? bound : kInfinite;
+  return most;
 }
 
 bool NearPairs::is_within_reach(const Motion& motion) {
   const double thick = thickness_.largest();
-  moved_ = moved(motion, anchor_, reach_);
+  if (!(reach_ > 0) || !(2 * sampled_length(motion) <= reach_ - thick)) return false;
+  moved_ = moved(motion, pose_, (reach_ - thick) / 2);
   // Rounded up, so that what is farther than the reach stays farther than the thickness.
   return rounded_up(2 * moved_ + thick) <= reach_;
 }
 
 void NearPairs::note_work(const CullCounts& counts) {
-  worth_ =
-      counts.pctp + static_cast<std::size_t>(static_cast<double>(counts.bvot.value_or(0)) / kOverlapTests);
+  work_ = static_cast<std::size_t>(counts.pctp + counts.bvot.value_or(0) / kOverlapTests) +
+          mesh_.triangle_count() / kLookedAt + 1;
 }
 
-bool NearPairs::covers(const Motion& motion) {
-  if (!(reach_ > 0) || !(2 * sampled_length(motion) <= reach_ - thickness_.largest()) ||
-      !is_within_reach(motion))
-    return false;
-  ++served_;
-  return true;
-}
-
-bool NearPairs::is_worth_anchoring(const Motion& motion) {
-  const double longest = most_room_ / (2 * kLeastSteps);
-  if (sample_.empty() || !(longest > 0)) return false;
+bool NearPairs::is_worth_listing(const Motion& motion) {
+  const double longest = kOfLists * most_room_ / 2;
+  if (work_ == 0 || sample_.empty() || !(longest > 0)) return false;
   const double length = sampled_length(motion);
   if (!(length <= longest)) return false;
-  if (waits_ > 0 && kFarShorter * length >= waits_for_) return --waits_, false;
+  const bool has_anchor = is_anchor_ || (motions_ && motions_->has_anchor());
+  if (!has_anchor && waits_ > 0 && kFarShorter * length >= waits_for_) return --waits_, false;
   length_ = moved(motion, motion.start(), longest);
   return length_ <= longest;
 }
 
-bool NearPairs::anchor(const Motion& motion, Detector& detector) {
-  const bool served_few = anchors_ > 0 && static_cast<double>(served_) < kLeastSteps;
-  waits_ = next_wait_ = served_few ? std::clamp(2 * next_wait_, kFirstWait, kLongestWait) : 0;
-  waits_for_ = length_;
-  const auto steps = static_cast<double>(std::max(kFirstSteps, 2 * served_));
-  const double room = std::clamp(2 * steps * length_, kLeastRoom * most_room_, most_room_);
-  return make_anchor(motion.start(), thickness_.largest() + room, detector) && is_within_reach(motion);
+// A list is made for the end of the step, because the next step is likely to start there.
+bool NearPairs::covers(const Motion& motion, const Complete& complete) {
+  if (!is_within_reach(motion)) {
+    if (!is_worth_listing(motion)) return false;
+    const double room = std::clamp(2 * kSteps * length_, kLeastRoom * most_room_, kOfLists * most_room_);
+    if (!list(motion.end(), room)) {
+      Detector* const detector = complete();
+      if (detector == nullptr || !anchor(motion.end(), *detector)) return false;
+    }
+    if (!is_within_reach(motion)) return forget_anchor(), false;
+  }
+  ++served_;
+  spared_ += work_;
+  return true;
 }
 
-bool NearPairs::make_anchor(std::span<const Vec3> pose, double reach, Detector& detector) {
+void NearPairs::forget_anchor() {
+  is_anchor_ = false;
+  if (motions_) motions_->forget_anchor();
+}
+
+bool NearPairs::anchor(std::span<const Vec3> pose, Detector& detector) {
+  const double thick = thickness_.largest();
+  const bool spared_less = anchors_ > 0 && (served_ * work_ < looked_at_);
+  waits_ = next_wait_ = spared_less ? std::clamp(2 * next_wait_, kFirstWait, kLongestWait) : 0;
+  waits_for_ = length_;
   ++anchors_;
-  served_ = 0;
-  reach_ = 0;  // nothing is known until the list is whole
-  near_.clear();
-  anchor_.assign(pose.begin(), pose.end());
-  const std::size_t most = std::max(kLeastMany, std::min(mesh_.triangle_count(), worth_));
-  Collector collector(mesh_, anchor_, most, reach, near_);
-  if (!detector.pass_on({.motion = Motion(anchor_, anchor_), .thickness = Thickness(reach)}, collector))
+  served_ = looked_at_ = bent_ = 0;
+  forget_anchor();
+  reach_ = 0, near_.clear();  // nothing is known until the list is whole
+  pose_.assign(pose.begin(), pose.end());
+  const std::size_t count = mesh_.triangle_count();
+  const std::size_t most = std::max(kLeastMany, std::clamp(work_, count / kTrianglesForOne, count));
+  const double reach = thick + most_room_;
+  NearCollector collector(mesh_, pose_, most, reach, near_);
+  if (!detector.pass_on({.motion = Motion(pose_, pose_), .thickness = Thickness(reach)}, collector))
     return most_room_ = 0, false;
-  const double room = collector.reach() - thickness_.largest();
-  if (collector.closed() || !(room > 0)) return most_room_ /= kWider, false;
+  looked_at_ = collector.count();
+  const double room = collector.reach() - thick;
+  if (collector.closed() || !(room > 0)) return most_room_ /= kFarther, false;
   if (collector.reach() < reach)
     most_room_ = room;
   else if (static_cast<double>(near_.size()) < kFew * static_cast<double>(most))
-    most_room_ = std::clamp(kWider * room, most_room_, kMostReach * edge_);
-  std::ranges::sort(near_, {}, &Near::low);
-  reach_ = collector.reach();
+    most_room_ = std::min(kFarther * room, kMostReach * edge_);
+  use_list(collector.reach());
+  is_anchor_ = true;
+  return true;
+}
+
+void NearPairs::use_list(double reach) {
+  std::ranges::sort(near_, {}, &NearPair::low);
+  reach_ = reach;
+  ++lists_;
+}
+
+// Lists what comes within the thickness and some room in a pose, from the anchor.
+bool NearPairs::list(std::span<const Vec3> pose, double room) {
+  if (is_anchor_) {
+    is_anchor_ = false;
+    if (!motions_ && spared_ >= mesh_.triangle_count()) motions_.emplace(mesh_, reference_);
+    if (motions_) motions_->set_anchor(pose_, reach_, near_);
+  }
+  if (!motions_ || !motions_->has_anchor()) return false;
+  reach_ = 0, near_.clear();
+  pose_.assign(pose.begin(), pose.end());
+  const double reach = thickness_.largest() + std::min(room, kOfLists * most_room_);
+  NearCollector collector(mesh_, pose_, std::max(kLeastMany, mesh_.triangle_count()), reach, near_);
+  const auto most = static_cast<std::size_t>(kBent * static_cast<double>(looked_at_));
+  const std::optional<std::size_t> bent =
+      motions_->pass_on(pose_, reach, most - std::min(most, bent_), near_, collector);
+  if (!bent || collector.closed()) return motions_->forget_anchor(), false;
+  bent_ += *bent;
+  use_list(collector.reach());
   return true;
 }
 
@@ -234,10 +270,10 @@ void NearPairs::pass_on(const Motion& motion, TrianglePairSink& sink) const {
     // Both triangles as seen from a corner of the first: what they have moved against each other.
     double apart = 0, error = 0;
     for (const std::span<const Vec3> to : {motion.start(), motion.end()}) {
-      const Vec3 own = to[+a[0]] - anchor_[+a[0]];
+      const Vec3 own = to[+a[0]] - pose_[+a[0]];
       double of_a = 0, of_b = 0, largest = own.cwiseAbs().maxCoeff();
       const auto look = [&](VertexId v, double& most_moved) {
-        const Vec3 displacement = to[+v] - anchor_[+v];
+        const Vec3 displacement = to[+v] - pose_[+v];
         largest = std::max(largest, displacement.cwiseAbs().maxCoeff());
         most_moved = std::max(most_moved, (displacement - own).squaredNorm());
       };

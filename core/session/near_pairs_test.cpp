@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "core/base/test_allocations.h"
 #include "core/detect/compose.h"
 #include "core/detect/plain_culler.h"
 #include "core/elementary/catalogue.h"
@@ -30,14 +31,23 @@ class NearPairsTest : public testing::Test {
     mesh_.emplace(shape_.mesh());
   }
   Vec3 draw() { return Vec3(some_(random_), some_(random_), some_(random_)); }
-  // Each piece moves on in a direction of its own, which changes now and then, and each vertex a little
-  // besides.
+  // Each piece moves on in a direction of its own and turns about its middle, which both change now and then.
+  // Besides, the sheet bends and each vertex moves a little.
   std::vector<Vec3> next(std::span<const Vec3> from, double step, bool turn) {
     std::vector<Vec3> out(from.begin(), from.end());
-    for (Vec3& way : ways_)
-      if (turn) way = draw();
-    for (std::size_t v = 0; v < out.size(); ++v)
-      out[v] += step * (ways_[std::min<std::size_t>(v / 162, 2)] + 0.3 * draw());
+    for (std::size_t piece = 0; piece < 3; ++piece) {
+      if (turn) ways_[piece] = draw(), spins_[piece] = 2 * draw();
+      const std::size_t first = 162 * piece, last = piece < 2 ? first + 162 : out.size();
+      Vec3 middle = Vec3::Zero();
+      for (std::size_t v = first; v < last; ++v) middle += from[v] / static_cast<double>(last - first);
+      const Vec3 spin = step * spins_[piece];
+      const Eigen::AngleAxisd turned(spin.norm(), spin.norm() > 0 ? spin.normalized() : Vec3::UnitX());
+      for (std::size_t v = first; v < last; ++v) {
+        const Vec3 seen = from[v] - middle;
+        out[v] = middle + turned * seen + step * (ways_[piece] + 0.3 * draw());
+        if (piece == 2) out[v] += step * spins_[piece].y() * seen.squaredNorm() * turned.axis();
+      }
+    }
     return out;
   }
   StrategyInput setup(bool first) const {
@@ -60,7 +70,7 @@ class NearPairsTest : public testing::Test {
   std::uniform_real_distribution<double> some_{-1, 1};
   test::Shape shape_;
   std::optional<TriangleMesh> mesh_;
-  std::array<Vec3, 3> ways_;
+  std::array<Vec3, 3> ways_, spins_;
 };
 
 std::vector<std::tuple<FeaturePair, double>> told(const ContactSet& found) {
@@ -108,7 +118,68 @@ TEST_F(NearPairsTest, AnswerAsTheStrategiesDo) {
       EXPECT_GT(touching, steps / 20);
       EXPECT_GT(near.anchors(), 2u);
       EXPECT_LT(near.anchors(), steps / 4);
+      EXPECT_GT(near.lists(), near.anchors());
     }
+}
+
+// Pieces that turn far while they stay as they are near each other: one anchor serves many lists.
+TEST_F(NearPairsTest, FollowWhatTurns) {
+  NearPairs near(*mesh_, shape_.positions, {});
+  Session with = session(false, &near, {}), without = session(false, nullptr, {});
+  std::vector<Vec3> start = shape_.positions;
+  StepAnswer a, b;
+  std::size_t touching = 0;
+  for (int n = 0; n < 300; ++n) {
+    SCOPED_TRACE(n);
+    const Eigen::AngleAxisd turn(0.01, Vec3(1, 2, 2) / 3);
+    const auto middle = [&](std::size_t piece) {
+      Vec3 sum = Vec3::Zero();
+      for (std::size_t v = 0; v < 162; ++v) sum += start[162 * piece + v];
+      return Vec3(sum / 162);
+    };
+    const Vec3 way = (n % 100 < 50 ? 3e-4 : -3e-4) * (middle(1) - middle(0)).normalized();
+    std::vector<Vec3> end = start;
+    for (std::size_t v = 0; v < end.size(); ++v) end[v] = turn * Vec3(v < 162 ? start[v] + way : start[v]);
+    with.step({start, end}, nullptr, a);
+    without.step({start, end}, nullptr, b);
+    ASSERT_EQ(told(a.found), told(b.found));
+    touching += !a.found.contacts.empty();
+    start = std::move(end);
+  }
+  EXPECT_GT(touching, 10u);
+  EXPECT_LT(near.anchors(), 6u);
+  EXPECT_GT(near.lists(), 20u);
+}
+
+// Where memory runs out, whatever is asked next is answered as by a session without a list.
+TEST_F(NearPairsTest, AnswerAfterMemoryRanOut) {
+  Session without = session(false, nullptr, {});
+  StepAnswer a, b;
+  std::size_t failed = 0;
+  for (std::size_t failing = 1; failing < 1000; failing = failing + 1 + failing / 8) {
+    SCOPED_TRACE(failing);
+    NearPairs near(*mesh_, shape_.positions, {});
+    Session with = session(false, &near, {});
+    std::vector<Vec3> start = shape_.positions;
+    bool has_failed = false;
+    for (std::size_t n = 0; n < 30; ++n) {
+      const std::vector<Vec3> end = next(start, 5e-3, n == 0);
+      if (n >= 5 + failing % 5 && !has_failed) g_failing = g_allocations + failing;
+      try {
+        with.step({start, end}, nullptr, a);
+      } catch (const std::bad_alloc&) {
+        has_failed = true;
+        with.step({start, end}, nullptr, a);
+      }
+      g_failing = 0;
+      without.step({start, end}, nullptr, b);
+      ASSERT_EQ(told(a.found), told(b.found));
+      start = end;
+    }
+    failed += has_failed;
+    EXPECT_GT(near.anchors(), 0u);
+  }
+  EXPECT_GT(failed, 10u);
 }
 
 // Sheets that lie so densely that a list cannot hold all that is near: every other one moves towards its
@@ -144,30 +215,43 @@ TEST_F(NearPairsTest, ReachLessFarWhereMuchIsNear) {
   EXPECT_GT(near.anchors(), 0u);
 }
 
-// The bound is spent to the last digit: a vertex that moves from just beyond the reach of a list touches.
+// The bound is spent to the last digit: a vertex that moves from just beyond the reach of a list touches, or
+// is close.
 TEST_F(NearPairsTest, HoldWhatComesFromTheEndOfTheirReach) {
   const std::vector<Triangle> faces{test::corners(0, 1, 2), test::corners(3, 4, 5)};
   const TriangleMesh mesh(faces, 6, "two triangles");
   for (int n = 0; n < count() / 2; ++n) {
     SCOPED_TRACE(n);
-    // The first triangle rises by small steps until it meets the second, which comes down as fast.
-    const double gap = 0.02 + 0.3 * std::abs(some_(random_)), step = 0.01 * (0.2 + std::abs(some_(random_)));
+    // The first triangle rises by small steps until it meets the second, which comes down as fast; every
+    // other time each vertex has a speed of its own.
+    const Thickness thickness(n % 3 == 0 ? 0.05 : 0);
+    const double gap = 0.4 + 0.5 * std::abs(some_(random_)), step = 0.01 * (0.2 + std::abs(some_(random_)));
     std::vector<Vec3> start{{0, 0, 0},       {1, 0, 0},       {0, 1, 0},
                             {0.2, 0.2, gap}, {1.2, 0.2, gap}, {0.2, 1.2, gap}};
+    std::vector<Vec3> way(6);
+    for (std::size_t v = 0; v < 6; ++v) {
+      const double speed = n % 2 == 0 ? 1 : std::abs(some_(random_));
+      way[v] = Vec3(0, 0, (v < 3 ? step / 2 : -step / 2) * speed);
+    }
     const StrategyInput setup{mesh, start, nullptr, *find_elementary_test("filtered_exact")};
-    NearPairs near(mesh, start, {});
-    Session session("test", setup, kDrvbcFastComplete, kDrvbcFastComplete, start,
-                    {.keep_rest_crossings = true, .near = &near});
-    StepAnswer answer;
-    for (;;) {
+    NearPairs near(mesh, start, thickness);
+    const auto made = [&](NearPairs* list) {
+      return Session("test", setup, kDrvbcFastComplete, kDrvbcFastComplete, start,
+                     {.keep_rest_crossings = true, .near = list, .thickness = thickness});
+    };
+    Session with = made(&near), without = made(nullptr);
+    StepAnswer a, b;
+    bool touched = false;
+    for (int steps = 0; steps < 600 && !touched; ++steps) {
       std::vector<Vec3> end = start;
-      for (std::size_t v = 0; v < 6; ++v) end[v].z() += v < 3 ? step / 2 : -step / 2;
-      session.step({start, end}, nullptr, answer);
-      const double before = start[3].z() - start[0].z(), after = end[3].z() - end[0].z();
-      ASSERT_EQ(!answer.found.contacts.empty(), before >= 0 && after <= 0) << before << " to " << after;
-      if (after < 0) break;
+      for (std::size_t v = 0; v < 6; ++v) end[v] += way[v];
+      with.step({start, end}, nullptr, a);
+      without.step({start, end}, nullptr, b);
+      ASSERT_EQ(told(a.found), told(b.found)) << steps;
+      touched = !b.found.contacts.empty();
       start = std::move(end);
     }
+    EXPECT_TRUE(touched || n % 2 == 1);
     EXPECT_GT(near.anchors(), 0u);
   }
 }

@@ -19,10 +19,7 @@ class NearDetector : public Detector {
     const bool is_near = list_covers(step);
     const double looked_ms = looking.milliseconds();
     Report report = (is_near ? *answers_near_ : *complete_).detect(step, out);
-    if (!is_near) {
-      near_->note_work(report.cull);
-      work_is_known_ = true;
-    }
+    if (!is_near) near_->note_work(report.cull);
     report.ms.refit += looked_ms;  // it looks at all positions, as a refit does
     return report;
   }
@@ -37,17 +34,14 @@ class NearDetector : public Detector {
     if (!near_ || step.thickness.largest() != thickness_) {
       thickness_ = step.thickness.largest();
       near_.emplace(setup_.mesh, setup_.reference, step.thickness);
-      work_is_known_ = false;
       answers_near_ = make_near_detector(*near_, setup_);
     }
-    return near_->covers(step.motion) || (work_is_known_ && near_->is_worth_anchoring(step.motion) &&
-                                          near_->anchor(step.motion, *complete_));
+    return near_->covers(step.motion, [&] { return complete_.get(); });
   }
 
   StrategyInput setup_;
   std::unique_ptr<Detector> complete_;
-  double thickness_ = 0;        // that the list is for
-  bool work_is_known_ = false;  // of a step, which says how many pairs a list may hold
+  double thickness_ = 0;  // that the list is for
   std::optional<NearPairs> near_;
   std::unique_ptr<Detector> answers_near_;
 };

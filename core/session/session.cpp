@@ -134,12 +134,12 @@ Session::PreparedStrategy& Session::choose(const Motion& motion, const Rig::Inte
 // long.
 bool Session::is_near(const Motion& motion) {
   if (options_.near == nullptr || !start_known_) return false;
-  if (!options_.near->covers(motion)) {
-    const bool is_complete = main_.strategy->guarantee == Guarantee::complete;
-    if (!options_.near->is_worth_anchoring(motion)) return false;
-    if (!is_complete && !fallback_ && ++small_steps_ < kSmallSteps) return false;
-    if (!options_.near->anchor(motion, *(is_complete ? main_ : fallback()).detector)) return false;
-  }
+  const auto complete = [&]() -> Detector* {
+    if (main_.strategy->guarantee == Guarantee::complete) return main_.detector.get();
+    if (!fallback_ && ++small_steps_ < kSmallSteps) return nullptr;
+    return fallback().detector.get();
+  };
+  if (!options_.near->covers(motion, complete)) return false;
   if (!near_) {
     StrategyInput setup = setup_;
     setup.first_only = first_only();
