@@ -94,6 +94,8 @@ CullCounts FastCuller::cull(TrianglePairSink& sink) {
   CullCounts counts;
   counts.radial = certificates_.counts();
   counts.bvot = descend(sink);
+  // A pose at rest is asked about beside the motion, and says nothing of the next step.
+  if (motion_->start().data() == motion_->end().data()) tests_.reset();
   return counts;
 }
 
