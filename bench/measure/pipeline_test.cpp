@@ -147,7 +147,8 @@ TEST_F(PipelineRun, TablesAndReportsTakeAFolder) {
   EXPECT_NE(report.out.find("page        cscd report results"), std::string::npos) << report.out;
   expect_refused(run("mkdir none && cscd tables none"), "none holds no record of cscd run");
   expect_refused(run("cscd tables results/tables.json.gz"), "holds no record of cscd run");
-  expect_refused(run("echo '{' >results/broken.json; cscd tables results"), "broken.json: is no record");
+  expect_refused(run("echo '{' >results/broken.json; cscd tables results"),
+                 "broken.json: is no JSON and so no record");
   expect_refused(run("cscd tables nowhere"), "nowhere");
 }
 

@@ -50,7 +50,8 @@ TEST_F(ReportPage, TakesRecordsOfOtherStudies) {
   EXPECT_GT(alone["accuracy"]["data"]["all"]["newton"]["queries"], 0);
   expect_refused(run("cscd report small.json a.json a.json -o site"), "a second record of this study");
   expect_refused(run("echo {} > empty.json; cscd report empty.json -o site"), "empty.json");
-  expect_refused(run("echo nothing > text.json; cscd report text.json -o site"), "text.json: is no record");
+  expect_refused(run("echo nothing > text.json; cscd report text.json -o site"),
+                 "text.json: is no JSON and so no record");
   expect_refused(
       run("sed 's/\"workloads\"/\"no\"/' a.json > broken.json; cscd report small.json broken.json -o site"),
       "does not follow its schema");
