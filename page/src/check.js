@@ -83,7 +83,7 @@ class Check {
 
   hear(run, { kind, number, ...data }) {
     this.wait(run);
-    if (kind === "refused") this.ask(`${data.name}: ${data.text}${/[.!?]$/.test(data.text) ? "" : "."}`);
+    if (kind === "refused") this.ask(`${data.name}: ${data.text}${/[.!?]$/.test(data.text) ? "" : "."} It was not checked.`);
     if (kind === "read") Object.assign(run, { header: data.header, titles: data.clips, intervals: data.intervals, passedOver: data.passedOver });
     if (kind === "frames") {
       const title = run.titles[number];

@@ -57,10 +57,10 @@ export class Timeline {
     const { width } = this.canvas.getBoundingClientRect(), long = context.measureText(text).width;
     context.globalAlpha = 0.8;
     context.fillStyle = getComputedStyle(document.documentElement).getPropertyValue("--panel").trim();
-    context.fillRect(side * (width - long - 6), top - 2, long + 6, 13);
+    context.fillRect(side * (width - long - 6), top - 13, long + 6, 12);
     context.globalAlpha = 1;
     context.fillStyle = colour;
-    context.fillText(text, side * (width - long - 6) + 3, top + 8);
+    context.fillText(text, side * (width - long - 6) + 3, top - 3);
   }
 
   labelOf(position) {
@@ -77,7 +77,7 @@ export class Timeline {
     const context = canvas.getContext("2d");
     context.scale(ratio, ratio);
     const style = getComputedStyle(document.documentElement), colour = (name) => style.getPropertyValue(name).trim();
-    const top = 12, bottom = height - 16, n = recording.intervals;
+    const top = 24, bottom = height - 16, n = recording.intervals;
     const x = (frame) => (frame / n) * width;
     context.fillStyle = colour("--clear");
     context.globalAlpha = 0.45;

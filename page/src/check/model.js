@@ -6,7 +6,7 @@ import { FBXLoader } from "three/examples/jsm/loaders/FBXLoader.js";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
 import { readSequence } from "./sequence.js";
 
-const ASK = "cscd query takes such files";
+const ASK = "the program takes such files, by the command cscd query";
 
 // Extensions that say how a surface looks, where light comes from, or who made the file (scenes/import/gltf/extensions.cpp).
 const HARMLESS = /^(KHR_(materials_|texture_|lights_punctual|xmp|techniques_webgl)|EXT_(lights_|texture_|mesh_features|instance_features|structural_metadata)|MSFT_(texture_dds|packing_)|CESIUM_primitive_outline|FB_ngon_encoding|GODOT_single_root)/;
@@ -14,7 +14,7 @@ const READ = ["KHR_mesh_quantization", "EXT_meshopt_compression", "KHR_meshopt_c
 
 // What three.js says on the console where it poses an FBX file otherwise than the file means.
 const FBX_REFUSED = [
-  [/more than 4 skinning weights/, "has vertices that follow more than four bones, of which three.js takes four"],
+  [/more than 4 skinning weights/, "has vertices that follow more than four bones, and this page takes four"],
   [/multiple layers/, "has a clip of several layers, of which three.js takes one"],
   [/attached to more than one geometry/, "has a skeleton or a morph target that several meshes share, which three.js does not read"],
   [/Spherical XYZ/, "turns a node by spheric angles, which three.js does not know"],
@@ -80,7 +80,7 @@ async function readGltf(bytes, files) {
   for (const { primitives } of json.meshes ?? [])
     for (const primitive of primitives) {
       const { POSITION, JOINTS_0, WEIGHTS_0, JOINTS_1 } = primitive.attributes;
-      if (JOINTS_1 !== undefined) throw new Error(`has vertices that follow more than four bones, of which three.js takes four; ${ASK}`);
+      if (JOINTS_1 !== undefined) throw new Error(`has vertices that follow more than four bones, and this page takes four; ${ASK}`);
       const moved = primitive.targets?.filter((target) => target.POSITION !== undefined).length ?? 0;
       if (moved > 0 && moved < primitive.targets.length) throw new Error(`has a morph target without positions beside others with them, which three.js takes for something else; ${ASK}`);
       primitive.attributes = JSON.parse(JSON.stringify({ POSITION, JOINTS_0, WEIGHTS_0 }));
