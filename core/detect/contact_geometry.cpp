@@ -71,7 +71,7 @@ std::array<double, 2> nearest_shares(const Vec3& p, const Vec3& q, const Vec3& r
 // The normal of features that are apart leads along their nearest points. Returns whether there is one.
 bool set_normal_between(const Located& first, const Located& second, ContactGeometry& out) {
   const Vec3 way = first.at - second.at;
-  const double length = way.stableNorm();
+  const double length = stable_length(way);
   if (!(length > 0) || !std::isfinite(length)) return false;
   out.normal = way / length;
   out.relative_speed = out.normal->dot(first.velocity - second.velocity);

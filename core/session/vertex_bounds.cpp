@@ -7,6 +7,7 @@
 #include "core/base/rounding.h"
 #include "core/detect/contact_geometry.h"
 #include "core/geometry/nearest_points.h"
+#include "core/geometry/unit_scale.h"
 
 namespace cscd {
 
@@ -30,7 +31,7 @@ void VertexBounds::add(const TriangleMesh& mesh, const Motion& motion, std::span
       at[i] = motion.start()[+v] - motion.start()[+vertices[0]];
       largest = std::max(largest, at[i].cwiseAbs().maxCoeff());
       if (!has_bounds(pair, i))
-        pair.moved[i] = (1 + 8 * kUnitRoundoff) * (motion.end()[+v] - motion.start()[+v]).stableNorm() +
+        pair.moved[i] = (1 + 8 * kUnitRoundoff) * stable_length(motion.end()[+v] - motion.start()[+v]) +
                         std::numeric_limits<double>::min();
     }
     const double error = 128 * kUnitRoundoff * largest;
