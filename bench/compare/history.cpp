@@ -178,6 +178,7 @@ const ordered_json* row_over(const ordered_json& scene) {
   return nullptr;
 }
 
+// Sorts what entries hold into courses. Entries come in the order of their commits.
 class CourseMaker {
  public:
   explicit CourseMaker(const CourseChoice& choice) : choice_(choice) {}
@@ -185,12 +186,12 @@ class CourseMaker {
     const std::string machine = machine_of(entry);
     if (!is_wanted(choice_.machine, machine)) return;
     for (const ordered_json& scene : entry.at("scenes")) {
-      ordered_json measured = measured_of(scene), timed = measured;
+      const ordered_json measured = measured_of(scene);
+      ordered_json timed = measured;  // times depend on the rows that shared the caches
       for (const ordered_json& row : scene.at("rows")) timed["rows"].push_back(row.at("name"));
       const ordered_json* const over = row_over(scene);
       for (const ordered_json& row : scene.at("rows")) {
-        const Course course{{}, scene.at("name"), row.at("name"), {}, {}, std::move(measured), {}, {}};
-        measured = course.measured;
+        const Course course{{}, scene.at("name"), row.at("name"), {}, {}, measured, {}, {}};
         for (const auto& [stage, ms] : row.at("ms").items()) {
           Course times = course;
           times.machine = machine, times.stage = stage, times.measured = timed;

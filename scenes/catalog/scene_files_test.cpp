@@ -134,7 +134,8 @@ class SceneFiles : public testing::TestWithParam<Asked> {
  protected:
   static bool responds() { return cscd::scenes::responds(GetParam()); }
   void SetUp() override {
-    // What the effects make of hand_contact, box_contact and urchin_contact, they make of larger surfaces.
+    // These three scenes are larger than hand_contact, box_contact and urchin_contact, and the same effects
+    // make all six.
     const std::string_view name = GetParam().name;
     if (!std::getenv("CSCD_FULL") && responds() &&
         (name.starts_with("rope") || name.starts_with("octopus") || name.starts_with("man")))

@@ -15,7 +15,7 @@ build=$(realpath "$1")
 mkdir -p "$2/queries"
 cd "$2"
 
-# Without optimisation a query takes twenty times as long.
+# Queries take long without optimisation, so the suite asks half as many.
 queries=6; [ -z "${3:-}" ] || queries=12
 "$build/cscd" hardcases --out queries --queries $queries --force > /dev/null
 
