@@ -55,7 +55,9 @@ json source_json(const Input& input, const FeaturePair& pair, bool second, Trian
   const Triangle& corners = input.mesh.corners(triangle);
   for (const VertexId vertex : side_vertices(input.mesh, pair, second)) {
     const auto corner = std::find(corners.begin(), corners.end(), vertex);
-    vertices.push_back(from.vertex[static_cast<std::size_t>(corner - corners.begin())]);
+    // A vertex of no face is one of a sequence, whose vertices keep the numbers of the file.
+    vertices.push_back(
+        corner == corners.end() ? +vertex : from.vertex[static_cast<std::size_t>(corner - corners.begin())]);
   }
   json out = {{"part", from.part}, {"mesh", nullptr}, {"primitive", nullptr}, {"vertices", vertices}};
   if (part.mesh >= 0) out["mesh"] = part.mesh;
@@ -65,8 +67,10 @@ json source_json(const Input& input, const FeaturePair& pair, bool second, Trian
 
 json side_json(const Input& input, const SurfaceNames& names, const FeaturePair& pair, bool second) {
   const TriangleId triangle = names.triangle_of(pair, second);
-  json out = {{"part", names.part_of(triangle)}, {"bone", nullptr}};
-  const std::string bone = names.bone_of(side_vertices(input.mesh, pair, second).front());
+  const std::vector<VertexId> vertices = side_vertices(input.mesh, pair, second);
+  const bool is_point = input.mesh.triangles_at(vertices.front()).empty();
+  json out = {{"part", is_point ? "a point" : names.part_of(triangle)}, {"bone", nullptr}};
+  const std::string bone = names.bone_of(vertices.front());
   if (!bone.empty()) out["bone"] = bone;
   if (input.import) out["source"] = source_json(input, pair, second, triangle);
   return out;

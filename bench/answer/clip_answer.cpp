@@ -75,8 +75,7 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
     worst = Worst{moment, answer.start.total, contacts};
 
   std::set<NamePair> here;
-  const auto meet = [&](TriangleId a, TriangleId b, double time, IntervalVerdict manner) -> Met& {
-    std::string x = names.place_of(a), y = names.place_of(b);
+  const auto meet = [&](std::string x, std::string y, double time, IntervalVerdict manner) -> Met& {
     if (!first) first = Meeting{moment, how, {x, y}};
     if (parted_ && !first_after_parting) first_after_parting = Meeting{moment, how, {x, y}};
     const Meeting meeting{{answer.index, time}, manner, {x, y}};
@@ -87,12 +86,13 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
     return entry;
   };
   for (const CrossingPair& pair : answer.start.pairs)
-    ++meet(pair.first, pair.second, 0, IntervalVerdict::intersects_at_start).start_pairs;
+    ++meet(names.place_of(pair.first), names.place_of(pair.second), 0, IntervalVerdict::intersects_at_start)
+          .start_pairs;
   for (const CrossingPair& pair : answer.start_touching.pairs)
-    meet(pair.first, pair.second, 0, IntervalVerdict::touches);
+    meet(names.place_of(pair.first), names.place_of(pair.second), 0, IntervalVerdict::touches);
   for (const Contact& contact : answer.found.contacts)
     if (contact.verdict == Verdict::contact)
-      ++meet(names.triangle_of(contact.pair, false), names.triangle_of(contact.pair, true), contact.time,
+      ++meet(names.place_of(contact.pair, false), names.place_of(contact.pair, true), contact.time,
              is_thick ? IntervalVerdict::close : IntervalVerdict::touches)
             .contacts;
   if (!first) first = Meeting{moment, how, {"the surface", "the surface"}};
@@ -100,16 +100,17 @@ void AnswerSummary::add(const IntervalAnswer& answer, const Motion& motion, cons
 
 void AnswerSummary::add_ignored(const IntervalAnswer& answer, const SurfaceNames& names) {
   std::set<NamePair> here;
-  const auto meet = [&](TriangleId a, TriangleId b) -> IgnoredHere& {
-    const auto [one, added] = here.insert(in_order(names.place_of(a), names.place_of(b)));
+  const auto meet = [&](std::string x, std::string y) -> IgnoredHere& {
+    const auto [one, added] = here.insert(in_order(std::move(x), std::move(y)));
     IgnoredHere& entry = ignored[*one];
     entry.intervals += added;
     return entry;
   };
-  for (const CrossingPair& pair : answer.ignored_pairs) ++meet(pair.first, pair.second).start_pairs;
+  for (const CrossingPair& pair : answer.ignored_pairs)
+    ++meet(names.place_of(pair.first), names.place_of(pair.second)).start_pairs;
   for (const Contact& contact : answer.ignored.contacts)
     if (contact.verdict == Verdict::contact)
-      ++meet(names.triangle_of(contact.pair, false), names.triangle_of(contact.pair, true)).contacts;
+      ++meet(names.place_of(contact.pair, false), names.place_of(contact.pair, true)).contacts;
   with_ignored += !here.empty();
 }
 

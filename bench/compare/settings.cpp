@@ -15,15 +15,11 @@ namespace {
 // result. None of them changes an answer or a counter of an interval that both records have. --clip and
 // --frames choose frames, and the digest of the frames says whether these are the same. Limits on time and
 // memory change no answer either.
-constexpr std::string_view kNoSettings[] = {"--scene",          "--input",         "--strategy",
-                                            "--frames",         "--repetitions",   "--count-every",
-                                            "--time-every",     "--time-contacts", "--verify-every",
-                                            "--seed",           "--smoke",         "--threads",
-                                            "--json",           "--force",         "--counts",
-                                            "--cells",          "--shards",        "--shard-intervals",
-                                            "--worker",         "--clip",          "--clip-number",
-                                            "--cell-intervals", "--import-memory", "--memory",
-                                            "--import-seconds"};
+constexpr std::string_view kNoSettings[] = {
+    "--scene",      "--input",         "--strategy",      "--frames", "--repetitions",     "--count-every",
+    "--time-every", "--time-contacts", "--verify-every",  "--seed",   "--smoke",           "--threads",
+    "--json",       "--force",         "--counts",        "--shards", "--shard-intervals", "--worker",
+    "--clip",       "--clip-number",   "--import-memory", "--memory", "--import-seconds"};
 
 constexpr std::string_view kThickName = ", thickness ";  // between the name of a scene and the thickness
 // Members of a record say these better than its command line, which older records do not spell out.

@@ -214,8 +214,8 @@ void Measurement::time(const Timing& timing) {
       }
     }
   if (!timing.beside_queries) return;
-  // The tests of the starts come after all queries. Between two repetitions they would drive from the caches
-  // what a strategy keeps, and the first query of the next repetition would pay for that.
+  // The tests of the starts come after all queries. Between two repetitions they would push out of the caches
+  // what a strategy keeps there, and the first query of the next repetition would be slower.
   EmbeddingTest test = make_embedding_test(input.setup(elementary_test_named("exact")));
   for (std::size_t r = first; r < results_.size(); ++r) {
     SectionResult& result = results_[r];

@@ -131,6 +131,12 @@ TriangleId SurfaceNames::triangle_of(const FeaturePair& pair, bool second) const
   return second || firsts.empty() ? seconds.front() : firsts.front();
 }
 
+std::string SurfaceNames::place_of(const FeaturePair& pair, bool second) const {
+  const bool is_vertex = pair.kind == FeaturePair::Kind::vertex_face && !second;
+  if (is_vertex && input_.mesh.triangles_at(VertexId{pair.a}).empty()) return "a point";
+  return place_of(triangle_of(pair, second));
+}
+
 std::map<NamePair, std::size_t> pairs_by_part(const SurfaceNames& names, const TriangleMesh& mesh,
                                               const Crossings& crossings) {
   std::map<std::string, std::size_t> size;

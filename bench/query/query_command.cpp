@@ -47,7 +47,7 @@ std::size_t most_start_pairs(const std::string& text) {
 
 // What was said of a clip, or of all clips of a file.
 struct Said {
-  IntervalVerdict verdict = IntervalVerdict::clear;  // the worst of any clip
+  IntervalVerdict verdict = IntervalVerdict::clear;  // of all clips: of one that collides, if any does
   bool too_deep = false;                             // for --fail-deeper-than
   std::vector<std::string> apart;                    // clips that the verdict does not count, as sentences
   json headline;                                     // of a clip

@@ -1,9 +1,11 @@
 // What the page says in words beside the list: the verdict, the legend, the numbers of the interval, the names of the panes.
 import { bitOf } from "./data.js";
 import { byId, element } from "./dom.js";
-import { coverOf, mostDepth } from "./painter.js";
-import { BLUE, CROSSED, GREEN, GREY, ORANGE, PINK, RED, SKIN, SKY, YELLOW } from "./palette.js";
-import { CLOSE, contactWord, isBad, isOpen, lengthText, many, markOf, number, VERDICTS } from "./words.js";
+import { coverOf, mostDepth, tinted } from "./painter.js";
+import { BLUE, CROSSED, GREEN, GREY, ORANGE, PINK, RED, SKIN, SKY, TINTS, YELLOW } from "./palette.js";
+import { CLOSE, contactWord, isBad, isOpen, isMild, lengthText, many, markOf, number, VERDICTS } from "./words.js";
+
+const MOST_PLACES = 6;  // of those that meet, in the legend
 
 export class Captions {
   constructor(recording) { this.recording = recording; }
@@ -11,7 +13,7 @@ export class Captions {
   // The sentences are made where the answers are (bench/answer/answer_text.h).
   sayVerdict({ summary, sentences: [headline, ...others], details }) {
     const verdict = byId("verdict");
-    verdict.className = isBad(summary) ? "bad" : isOpen(summary) ? "" : "good";
+    verdict.className = isMild(summary) ? "mild" : isBad(summary) ? "bad" : isOpen(summary) ? "" : "good";
     verdict.replaceChildren(element("span", `${markOf(summary)} `, "mark"), document.createTextNode(headline), element("span", others.map((sentence) => ` ${sentence}`).join(""), "others"));
     byId("answered").textContent = details;
     document.title = `${this.recording.header.name}: cscd view`;
@@ -37,7 +39,7 @@ export class Captions {
     byId("facts").replaceChildren(...facts.flatMap(([name, value]) => [element("dt", name), element("dd", value)]));
   }
 
-  sayLegend(strategy, interval, mode, chosen, observers) {
+  sayLegend(strategy, interval, mode, chosen, observers, placeColour) {
     const item = (colour, what) => {
       const span = element("span"), swatch = element("i");
       swatch.style.background = colour;
@@ -53,10 +55,14 @@ export class Captions {
       if (strategy.start_pairs[interval] > 0) rows.push(item(CROSSED, "crosses"), item(RED, "where"));
       if (this.recording.truths?.get(interval)?.pair) rows.push(item(PINK, "true motion"));
       if (rows.length === 0) rows.push(item(SKIN, `this interval is ${VERDICTS[strategy.verdict[interval]]}`));
-    } else if (mode === "depth") rows.push(item(SKIN, "lies in nothing"), this.depthScale(), item(RED, "lines: where pieces cross"));
+    } else if (mode === "depth") rows.push(...tinted(this.recording, chosen).map((number, i) => item(TINTS[i], this.recording.texts[number])), item(SKIN, "lies in nothing"), this.depthScale(), item(RED, "lines: where pieces cross"));
     else if (mode === "positive") rows.push(item(SKIN, "positive: seen from behind throughout the interval"), item(RED, "not positive"));
     else if (mode === "often") rows.push(item(SKIN, "never"), item(YELLOW, "once"), item(RED, "most often"));
-    else if (mode === "place" || mode === "part") rows.push(element("b", { place: "one colour for each name", part: "one colour for each part" }[mode]));
+    else if (mode === "place") {
+      const { texts } = this.recording, met = new Set(strategy.summary.met.flatMap(({ first, second }) => [first, second]));
+      const named = Array.from(met, (name) => texts.indexOf(name)).filter((number) => placeColour(number)).slice(0, MOST_PLACES);
+      rows.push(...named.map((number) => item(placeColour(number), texts[number])), element("b", "the pointer names the others"));
+    } else if (mode === "part") rows.push(element("b", "one colour for each part"));
     else if (mode === "patch") rows.push(element("b", strategy.has_patches ? "patches of up to 16 triangles, the unit of work" : `${strategy.name} has no patches`));
     else if (cover > 0) {
       if (strategy.covers > cover) rows.push(element("b", `one colour for each cluster of ${cover === 1 ? "the second cover, which lie at seams of the first" : "the third cover, where seams of both meet"}`), item(GREY, "in no cluster of it"));
@@ -76,7 +82,7 @@ export class Captions {
     byId("legend").replaceChildren(...rows);
   }
 
-  // The colours of depths from 0 to the deepest vertex of the clip, with numbers.
+  // The colours of depths from 0 to the deepest one, with numbers.
   depthScale() {
     const scale = element("span", undefined, "scale"), bar = element("i"), most = mostDepth(this.recording);
     bar.style.background = `linear-gradient(to right, ${YELLOW}, ${RED})`;

@@ -126,7 +126,7 @@ class Check {
     byId("details").textContent = run.header.notes;
     document.body.classList.remove("reading");
     if (this.answered.length < 2) return;
-    listClips(this.answered, number);
+    listClips(this.run.header, this.answered, number);
     byId("clips").addEventListener("change", ({ target }) => this.show(Number(target.value)));
   }
 

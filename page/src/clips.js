@@ -1,7 +1,7 @@
 // A page of several clips shows one of them. The address says which, as in horse.html#clip=3; without it, the one in which the
 // surface lies deepest in itself, or where nothing does, the first that touches itself. To show another clip the page is opened anew, because everything on it belongs to one clip.
 import { byId, element } from "./dom.js";
-import { markOf } from "./words.js";
+import { isBad, isMild, isOpen, lengthText, markOf } from "./words.js";
 
 const summaryOf = (clip) => clip.strategies[0].summary;
 
@@ -24,17 +24,20 @@ export function worstClip(clips) {
 export function offerClips(header) {
   if (!header.clips) return;
   const list = byId("clips"), shown = chosenClip(header);
-  listClips(header.clips, shown);
+  listClips(header, header.clips, shown);
   list.addEventListener("change", () => { window.location.hash = `clip=${list.value}`; });
   window.addEventListener("hashchange", () => {
     if (chosenClip(header) !== shown) window.location.reload();
   });
 }
 
-export function listClips(clips, shown) {
-  const list = byId("clips");
-  list.replaceChildren(...clips.map((clip, i) => {
-    const option = element("option", `${markOf(summaryOf(clip))} ${clip.title}`);
+// The deepest first, then what crosses or touches, then the others, each in the order of the file.
+export function listClips(header, clips, shown) {
+  const list = byId("clips"), rank = (clip) => (isBad(summaryOf(clip)) ? (isMild(summaryOf(clip)) ? 1 : 2) : isOpen(summaryOf(clip)) ? 1 : 0);
+  const sorted = clips.map((clip, i) => ({ clip, i })).sort((a, b) => depthIn(b.clip) - depthIn(a.clip) || rank(b.clip) - rank(a.clip) || a.i - b.i);
+  list.replaceChildren(...sorted.map(({ clip, i }) => {
+    const { headline } = summaryOf(clip), deep = headline ? `, ${lengthText({ header }, headline.depth.at_least)} deep` : "";
+    const option = element("option", `${markOf(summaryOf(clip))} ${clip.title}${deep}`);
     option.value = String(i);
     return option;
   }));

@@ -89,7 +89,7 @@ export const bitOf = (bytes, triangles, interval, t) => (bytes[interval * Math.c
 // `deepest`, where `time` is 0, or in the last pose, which is the end of the last interval.
 function eventOf({ clip, strategies }, number) {
   const event = strategies[0].summary.events[number], from = (moment) => moment.interval - clip.first_interval;
-  return { number, name: event.first, out: event.out, atJoint: event.at_joint, first: from(event.begins), deepest: from(event.deepest), time: event.deepest.time, last: from(event.ends), point: event.point, depths: event.depth_at };
+  return { number, name: event.first, other: event.second, out: event.out, atJoint: event.at_joint, first: from(event.begins), deepest: from(event.deepest), time: event.deepest.time, last: from(event.ends), point: event.point, depths: event.depth_at };
 }
 
 export async function loadRecording() {

@@ -3,7 +3,7 @@ import * as THREE from "three";
 import { coverOf } from "./painter.js";
 
 const MOST_NORMALS = 40;  // beside that of the chosen contact
-const MOST_LINES = 400;  // contacts whose features are outlined beside the chosen one
+const DENSE = 60;  // above so many contacts, their triangles show an area, and features are not outlined
 const OBSERVER = "#20303c";  // an observer's colour where the surface is not coloured by its cluster
 
 export class Marker {
@@ -57,8 +57,8 @@ export class Marker {
     };
     for (let c = from; c < to; ++c) {
       this.contactPoint(strategy, interval, c).toArray(points, points.length);
-      weights.push(c === from ? 0.6 : to - from > 60 ? 0.15 : 0.3);
-      if (c - from < MOST_LINES && !(chosen && chosen.contact === c)) {
+      weights.push(c === from ? 0.6 : to - from > DENSE ? 0.15 : 0.3);
+      if (to - from <= DENSE && !(chosen && chosen.contact === c)) {
         feature(others, c, false);
         feature(others, c, true);
       }

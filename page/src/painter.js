@@ -1,6 +1,6 @@
 // The colour of every triangle, by what the reader wants to tell apart.
 import { bitOf } from "./data.js";
-import { CLUSTERS, colourGroups, CROSSED, edgeNeighbours, GREY, groupNeighbours, ORANGE, PINK, RED, rgb, SKIN, SKY, YELLOW } from "./palette.js";
+import { CLUSTERS, colourGroups, CROSSED, edgeNeighbours, GREY, groupNeighbours, ORANGE, PINK, RED, rgb, SKIN, SKY, TINTS, YELLOW } from "./palette.js";
 
 // Ways of colouring that change from interval to interval.
 const CHANGING = ["verdict", "depth", "cluster", "positive"];
@@ -30,11 +30,13 @@ export function modesOf({ strategies, clip, place, part, events }) {
   return modes;
 }
 
-// How deep the deepest vertex of the clip lies in another piece of the surface.
-export function mostDepth(recording) {
-  recording.mostDepth ??= recording.insideDepth.reduce((a, b) => Math.max(a, b), 0);
-  return recording.mostDepth;
+// The depth that the verdict names, or else that of the deepest vertex of the clip in another piece of the surface.
+export function mostDepth({ strategies: [{ summary: { headline } }], insideDepth }) {
+  return headline?.depth.at_least || insideDepth.reduce((a, b) => Math.max(a, b), 0);
 }
+
+// The numbers of the two places of a chosen event, what lies in the other first; empty where there is one place, or no event.
+export const tinted = ({ texts }, chosen) => (chosen?.event && chosen.event.name !== chosen.event.other ? [chosen.event.name, chosen.event.other].map((name) => texts.indexOf(name)) : []);
 
 export class Painter {
   constructor(recording) {
@@ -44,8 +46,9 @@ export class Painter {
   }
 
   // Paints a look of the surface (surface.js) as strategy number `index` answers an interval.
-  paint(look, index, mode, interval) {
-    const key = `${index} ${mode} ${CHANGING.includes(mode) ? interval : ""}`;
+  paint(look, index, mode, interval, chosen) {
+    const tints = mode === "depth" ? tinted(this.recording, chosen) : [];
+    const key = `${index} ${mode} ${CHANGING.includes(mode) ? interval : ""} ${tints}`;
     if (look.key === key) return;
     look.key = key;
     const strategy = this.recording.strategies[index], { triangles } = this.recording.clip, out = look.colours;
@@ -54,9 +57,9 @@ export class Painter {
       out[4 * t + 1] = g;
       out[4 * t + 2] = b;
     };
-    const skin = rgb(SKIN);
+    const skin = rgb(SKIN), skins = TINTS.map(rgb), { place } = this.recording;
     for (let t = 0; t < triangles; ++t) {
-      set(t, skin);
+      set(t, skins[tints.indexOf(place[t])] ?? skin);
       out[4 * t + 3] = 255;
     }
     look.glow.visible = mode === "verdict" || mode === "depth";
@@ -77,7 +80,7 @@ export class Painter {
       const depths = this.depthsAt(interval), most = mostDepth(this.recording) || 1, low = rgb(YELLOW), high = rgb(RED), { corners } = this.recording;
       if (depths.size === 0) return;
       for (let t = 0; t < triangles; ++t) {
-        const deep = [0, 1, 2].map((k) => depths.get(corners[3 * t + k]) ?? -1), deepest = Math.max(...deep);
+        const deep = [0, 1, 2].map((k) => depths.get(corners[3 * t + k]) ?? -1), deepest = Math.min(most, Math.max(...deep));
         if (deepest >= 0) setGlowing(t, low.map((x, i) => x + (deepest / most) * (high[i] - x)));
       }
     } else if (mode === "often") {
@@ -132,6 +135,9 @@ export class Painter {
     const colours = colourGroups(neighbours, (g) => atomic.colours[g]);
     return { of: Int32Array.from(strategy.atomic, (a) => label[a]), colours };
   }
+
+  // The colour of the places of one name, by its number.
+  placeColour(number) { return CLUSTERS[this.coloured("place", this.recording.place).colours[number]]; }
 
   coloured(name, of) {
     if (!this.colourings.has(name)) {

@@ -4,6 +4,8 @@ export const ORANGE = "#E69F00", BLUE = "#0072B2", GREEN = "#009E73", PINK = "#C
 export const CLUSTERS = [BLUE, ORANGE, SKY, RED, GREEN, YELLOW, PINK];
 
 export const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+// The skin of the two places of a chosen event: what lies in the other, and the other.
+export const TINTS = [BLUE, PINK].map((hex) => `#${rgb(hex).map((x, i) => Math.round(0.35 * x + 0.65 * rgb(SKIN)[i]).toString(16).padStart(2, "0")).join("")}`);
 
 // Gives every group of triangles a colour of the palette that no neighbouring group has, where the palette allows it: greedily,
 // beginning at the colour that `preferred` names. Returns the number of the colour of each group.

@@ -224,7 +224,7 @@ export class Viewer {
     const chosen = this.chosen && this.chosen.interval === interval ? this.chosen : null;
     this.shown.forEach((s, i) => {
       const look = stage.looks[i];
-      this.painter.paint(look, s, mode, interval);
+      this.painter.paint(look, s, mode, interval, chosen);
       this.marker.mark(look.marks, s, interval, s === this.strategy ? chosen : null, this.normalsShown, mode);
       this.marker.markObservers(look.marks, s, mode, interval, pose.at ?? pose.t, this.observersShown);
     });
@@ -237,7 +237,7 @@ export class Viewer {
     byId("slider").setAttribute("aria-valuetext", momentText(this.recording, this.position));
     this.timeline.show(active, this.position);
     this.captions.sayInterval(active, interval, pose.predicted);
-    this.captions.sayLegend(active, interval, mode, chosen, this.observersShown);
+    this.captions.sayLegend(active, interval, mode, chosen, this.observersShown, (number) => this.painter.placeColour(number));
     this.captions.sayPanes(this.shown.map((s) => this.recording.strategies[s]), interval);
     this.list.show(active, this.chosen, this.playing);
     stage.requestDraw();

@@ -14,10 +14,23 @@ export const contactVerb = (strategy, contact) => {
 // tell whether it touches.
 export const isBad = ({ true_motion: own, ...lines }) => (own ? own.touches + own.intersects_at_start : lines.touches + lines.intersects_at_start + (lines.close || 0)) > 0;
 export const isOpen = ({ true_motion: own, undecided }) => (own ? own.undecided + own.close : undecided) > 0;
-export const markOf = (summary) => (isBad(summary) ? "\u2716" : isOpen(summary) ? "?" : "\u2714");
+// What only touches, or folds at joints, is milder than what lies in something.
+export const isMild = (summary) => isBad(summary) && !summary.true_motion && !summary.headline && !summary.intersects_at_start;
+export const markOf = (summary) => (isMild(summary) ? "\u25cf" : isBad(summary) ? "\u2716" : isOpen(summary) ? "?" : "\u2714");
 
-// A figure as `cscd` writes it: three significant digits, all digits before the point, commas between thousands.
-export const number = (x) => (Math.abs(x) >= 999.5 ? Math.round(x).toLocaleString("en") : String(Number(x.toPrecision(3))));
+// A figure as `cscd` writes it (figure_text() of core/base/number_text.h): three significant digits, all digits before the point,
+// commas between thousands, an exponent for the small and the very large. JavaScript rounds ties up, and C++ to the even digit.
+export function number(x, digits = 3) {
+  const size = Math.abs(x), isWhole = size >= 10 ** digits - 0.5 && size < 1e15;
+  const kept = isWhole ? Math.floor(Math.log10(size)) : digits - 1;  // digits behind the first one
+  const [exact, exponent] = size.toExponential(60).split("e");
+  const isEvenTie = /^[02468]50*$/.test(exact.replace(".", "").slice(kept));
+  const rounded = isEvenTie ? Number(`${exact.slice(0, kept + (kept > 0 ? 2 : 1))}e${exponent}`) : Number(size.toExponential(kept));
+  const sign = x < 0 ? "-" : "";
+  if (isWhole || (Number.isInteger(rounded) && size < 1e15)) return sign + rounded.toLocaleString("en");
+  if (rounded >= 1e-4 && rounded < 10 ** digits) return sign + String(rounded);
+  return sign + rounded.toExponential().replace(/e([+-])(\d)$/, "e$10$2");
+}
 // A length of the input's positions, in a unit where the input tells its own (distance_text() of bench/inputs/thickness.h).
 export function lengthText({ header }, length) {
   const centimetres = (header.import?.centimetres_per_unit ?? 0) * length;

@@ -85,14 +85,17 @@ try {
     await picture(`refuses-${name}`);
   }
 
-  // A sequence of three frames in which a triangle falls through another one.
-  const frames = [0.5, -0.5, -1].map((z, i) => {
-    const path = join(scratch, `fall.${i}.obj`);
-    writeFileSync(path, `v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 ${z}\nv 2 1 ${z}\nv 1 2 ${z}\nf 1 2 3\nf 4/1 5/2 6/3\n`);
-    return path;
-  });
-  require(await compare(frames, "fall.0.obj"), "a sequence has another verdict");
-  require((await page.textContent("#verdict")).includes("touches itself in 1 of 2 intervals"), `the page says: ${await page.textContent("#verdict")}`);
+  // Sequences of three frames in which something falls through a triangle: another triangle, and a point.
+  for (const [name, below, verdict] of [["fall", (z) => `v 1 1 ${z}\nv 2 1 ${z}\nv 1 2 ${z}\nf 4/1 5/2 6/3\n`, "touches itself in 1 of 2 intervals"],
+    ["point", (z) => `v 1 1 ${z}\n`, "a point touches the surface"]]) {
+    const frames = [0.5, -0.5, -1].map((z, i) => {
+      const path = join(scratch, `${name}.${i}.obj`);
+      writeFileSync(path, `v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n${below(z)}`);
+      return path;
+    });
+    require(await compare(frames, `${name}.0.obj`), "a sequence has another verdict");
+    require((await page.textContent("#verdict")).includes(verdict), `the page says: ${await page.textContent("#verdict")}`);
+  }
 
   const wrong = [], answered = [];
   for (const path of models) {

@@ -134,7 +134,8 @@ class FileSequence final : public MeshSequence {
     if (surface.positions.size() != first_.positions.size())
       throw InputError(name + ": has " + std::to_string(surface.positions.size()) +
                        " vertices, and the first file has " + std::to_string(first_.positions.size()) +
-                       "; export a surface whose vertices stay the same");
+                       "; export a surface whose vertices stay the same, or move files of another "
+                       "surface to a folder of their own");
     if (surface.faces != first_.faces)
       throw InputError(name +
                        ": has other faces than the first file; export a surface whose faces stay the same");

@@ -110,9 +110,13 @@ class ObjReader {
       x[axis] = lines_.number(coordinate, "coordinate");
     }
     surface_.positions.push_back(x);
-    // A weight or a colour may follow.
-    for (std::string_view more = word(); !more.empty(); more = word())
+    // A weight, which is of curves alone, or a colour may follow, or both.
+    std::size_t further = 0;
+    for (std::string_view more = word(); !more.empty(); more = word(), ++further)
       if (!number_of(more)) lines_.fail(lines_.quoted(more) + " stands behind a vertex and is no number");
+    if (further == 2 || further > 4)
+      lines_.fail("a vertex has " + std::to_string(3 + further) +
+                  " numbers; write three, or a colour behind them");
   }
 
   void read_face() {

@@ -74,6 +74,8 @@ PlyHeader read_header(TextLines& lines) {
       header.ascii = format == "ascii";
       header.big = format == "binary_big_endian";
       known = header.ascii || header.big || format == "binary_little_endian";
+      if (const std::string_view version = lines.word(); version != "1.0")
+        lines.fail("the version of PLY is " + lines.quoted(version) + ", and 1.0 alone is known");
     } else if (word == "element") {
       header.elements.push_back({std::string(lines.word()), 0, {}});
       const double count = lines.number(lines.word(), "count");

@@ -148,6 +148,8 @@ TEST(SurfaceFiles, ObjNumbersAreNumbersOrRefused) {
         {"v 0 0 0\n'f' 1 1 1\n", "line 2: ''f'' is no statement, although"},
         {"v 0 0 0\n\xC3\xBC 4 0 0\n", "line 2: '\?\?' is no statement; it holds bytes"},
         {"v 0 0 0 v 1 1 1\n", "line 1: 'v' stands behind a vertex"},
+        {"v 0 0 0 1 1\n", "line 1: a vertex has 5 numbers"},
+        {"v 0 0 0 1 1 1 1 1\n", "line 1: a vertex has 8 numbers"},
         {"v 0 0 0\nf 1,1,1\n", "line 2: '1,1,1' is no vertex number"},
         {"v 0 0 0\nf 1 1.0 1\n", "line 2: '1.0' is no vertex number"},
         {"v 0 0 0\nf 1 0 1\n", "line 2: '0' names no vertex"},
@@ -208,6 +210,7 @@ TEST(SurfaceFiles, PlyNumbersAreNumbersOrRefused) {
         {"property float y", "proprty float y", "line 5: 'proprty' is no line"},
         {"property float y", "property float x", "has vertices without one x, y and z each"},
         {"element face", "element tristrips", "its faces are strips"},
+        {"ascii 1.0", "ascii 2.0", "line 2: the version of PLY is '2.0'"},
         {"ply", "\xFE\xFFply", "is text in UTF-16"}})
     EXPECT_TRUE(says(ply_refusal(with(kPlainPly, from, to)), what)) << to;
 }

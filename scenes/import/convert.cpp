@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 
 #include "core/base/error.h"
 #include "scenes/character/pieces.h"
@@ -151,31 +152,24 @@ void require_simple(const ImportOptions& options) {
         "model files but --fps");
 }
 
-// The triangles with three corners, each set of corners once, and the vertices that they have, in the order
-// of the file. Of two triangles with the same corners each edge has a third neighbour, at which no side of
-// the surface is inside, so that no depth would be known.
+// The triangles with three corners, each set of corners once. Of two triangles with the same corners each
+// edge has a third neighbour, at which no side of the surface is inside, so that no depth would be known. All
+// vertices stay: those of no face are points.
 struct Surface {
   WeldedTriangles faces;
-  std::vector<std::int32_t> vertex;  // [vertices]: number in the file
   SourceMap sources;
 };
 
 Surface surface_of(const MeshSequence& sequence) {
   Surface surface;
   const auto all = sequence.triangles();
-  std::vector<std::int32_t> number(sequence.vertex_count(), -1);
-  for (const auto& corners : all)
-    for (const std::int32_t v : corners) number[static_cast<std::size_t>(v)] = 0;
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] < 0) continue;
-    number[v] = static_cast<std::int32_t>(surface.vertex.size());
-    surface.vertex.push_back(static_cast<std::int32_t>(v));
-  }
+  std::vector<std::int32_t> number(sequence.vertex_count());
+  std::iota(number.begin(), number.end(), 0);
   surface.faces = welded(all, number);
   if (surface.faces.triangles.empty())
     throw InputError("has no triangle with three corners; export it again");
   for (const std::size_t source : surface.faces.source) surface.sources.triangle.push_back({0, all[source]});
-  surface.sources.bone.assign(surface.vertex.size(), -1);
+  surface.sources.bone.assign(number.size(), -1);
   return surface;
 }
 
@@ -235,16 +229,17 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
         "is one pose, and nothing moves; name one file of a sequence, as in walk.0001.obj, whose other "
         "frames lie beside it");
   const Surface surface = surface_of(*sequence);
-  const TriangleMesh mesh(surface.faces.triangles, surface.vertex.size());
-  if (frames > limits.frames || frames * surface.vertex.size() * sizeof(Vec3) > limits.cache_bytes)
-    throw InputError("its " + std::to_string(frames) + " frames of " + std::to_string(surface.vertex.size()) +
+  const std::size_t vertices = sequence->vertex_count();
+  const TriangleMesh mesh(surface.faces.triangles, vertices);
+  if (frames > limits.frames || frames * vertices * sizeof(Vec3) > limits.cache_bytes)
+    throw InputError("its " + std::to_string(frames) + " frames of " + std::to_string(vertices) +
                      " vertices are more than the " + std::to_string(limits.frames) + " frames or " +
                      std::to_string(limits.cache_bytes >> 20) + " MiB that are supported; leave frames out");
 
   ImportReport report;
   report.format = sequence->format();
   report.meshes = report.nodes = 1;
-  report.vertices = sequence->vertex_count();
+  report.vertices = vertices;
   report.triangles = sequence->triangles().size();
   report.fps = options.fps ? *options.fps : sequence->fps().value_or(kAssumedFps);
   report.fps_from = options.fps ? kAsked : sequence->fps() ? kStated : kAssumed;
@@ -260,18 +255,17 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
   report.chosen_triangles = surface.faces.triangles.size();
   write_source_map(surface.sources, sources);
 
-  PointCacheWriter writer(cache, {surface.faces.triangles, surface.vertex.size(), {}, false}, false);
-  std::vector<Vec3> all, used(surface.vertex.size());
+  PointCacheWriter writer(cache, {surface.faces.triangles, vertices, {}, false}, false);
+  std::vector<Vec3> positions;
   for (std::size_t frame = 0; frame < (options.survey ? 2 : std::max<std::size_t>(2, frames)); ++frame) {
-    sequence->read_frame(std::min(frame, frames - 1), all);  // a cache has two frames, those of one pose too
-    for (std::size_t v = 0; v < used.size(); ++v) used[v] = all[static_cast<std::size_t>(surface.vertex[v])];
-    writer.append({used, {}});
+    sequence->read_frame(std::min(frame, frames - 1),
+                         positions);  // a cache has two frames, those of one pose too
+    writer.append({positions, {}});
   }
   writer.finish();
   report.notes = sequence->notes();
-  if (std::string loose = note_on_loose_vertices(sequence->vertex_count(), sequence->triangles());
-      !loose.empty())
-    report.notes.push_back(std::move(loose));
+  if (const std::size_t loose = loose_vertices(vertices, sequence->triangles()); loose > 0)
+    report.notes.push_back(note_on_points(loose));
   return report;
 }
 

@@ -500,14 +500,12 @@ TEST_F(Convert, RefusesSkeletonsWithoutSurfaceAndTooManyFrames) {
   EXPECT_TRUE(says(refusal(point), "one point"));
 }
 
-// Vertices of no face are left out with a word, in a sequence as in a model.
-TEST_F(Convert, SaysHowManyVerticesOfNoFaceAreLeftOut) {
-  const std::vector<RawTriangle> faces{{0, 2, 3}};
-  EXPECT_EQ(note_on_loose_vertices(4, faces),
-            "1 vertex is of no face and is left out: no answer is about it");
-  EXPECT_EQ(note_on_loose_vertices(6, faces),
-            "3 vertices are of no face and are left out: no answer is about them");
-  EXPECT_EQ(note_on_loose_vertices(3, std::vector<RawTriangle>{{0, 1, 2}}), "");
+// Vertices of no face are points of a sequence, and left out of a model, with a word in both.
+TEST_F(Convert, SaysWhatVerticesOfNoFaceAre) {
+  EXPECT_EQ(loose_vertices(6, std::vector<RawTriangle>{{0, 2, 3}}), 3u);
+  EXPECT_EQ(loose_vertices(3, std::vector<RawTriangle>{{0, 1, 2}}), 0u);
+  EXPECT_EQ(note_on_loose_vertices(1), "1 vertex is of no face and is left out: no answer is about it");
+  EXPECT_EQ(note_on_loose_vertices(3), "3 vertices are of no face and are left out: no answer is about them");
 
   for (const char* height : {"1", "-1"}) {
     std::ofstream obj(root / (std::string("f.") + (*height == '-' ? "1" : "0") + ".obj"));
@@ -515,7 +513,8 @@ TEST_F(Convert, SaysHowManyVerticesOfNoFaceAreLeftOut) {
   }
   report = import_sequence(root / "f.0.obj", {}, {}, root / "clip.h5", root / "sources");
   ASSERT_EQ(report.notes.size(), 2u);
-  EXPECT_EQ(report.notes[1], note_on_loose_vertices(4, faces));
+  EXPECT_EQ(report.notes[1], note_on_points(1));
+  EXPECT_EQ(read_clip(root / "clip.h5").header().vertex_count, 4u);
 }
 
 }  // namespace

@@ -119,18 +119,23 @@ ChosenSurface choose(const WeldedTriangles& surface, std::size_t raw_vertices, c
 
 }  // namespace
 
+std::string note_on_points(std::size_t loose) {
+  return std::to_string(loose) +
+         (loose == 1 ? " vertex is of no face: a point that touches faces, and crosses nothing"
+                     : " vertices are of no face: points that touch faces, and cross nothing");
+}
+
 std::string note_on_loose_vertices(std::size_t loose) {
-  if (loose == 0) return "";
   return std::to_string(loose) +
          (loose == 1 ? " vertex is of no face and is" : " vertices are of no face and are") +
          " left out: no answer is about " + (loose == 1 ? "it" : "them");
 }
 
-std::string note_on_loose_vertices(std::size_t vertices, std::span<const RawTriangle> triangles) {
+std::size_t loose_vertices(std::size_t vertices, std::span<const RawTriangle> triangles) {
   std::vector<bool> used(vertices, false);
   for (const RawTriangle& t : triangles)
     for (const std::int32_t corner : t) used[static_cast<std::size_t>(corner)] = true;
-  return note_on_loose_vertices(static_cast<std::size_t>(std::ranges::count(used, false)));
+  return static_cast<std::size_t>(std::ranges::count(used, false));
 }
 
 RawSurface raw_surface(const Character& character) {
@@ -162,8 +167,8 @@ RawSurface raw_surface(const Character& character) {
 
 ChosenSurface choose_surface(const Character& character, const RawSurface& raw, const ImportOptions& options,
                              ImportReport& report) {
-  if (std::string note = note_on_loose_vertices(raw.positions.size(), raw.triangles); !note.empty())
-    report.notes.push_back(std::move(note));
+  if (const std::size_t loose = loose_vertices(raw.positions.size(), raw.triangles); loose > 0)
+    report.notes.push_back(note_on_loose_vertices(loose));
   Welded surface = weld_surface(raw, probes(character), options.weld, report);
   report.collapsed_triangles = surface.surface.collapsed;
   report.duplicate_triangles = surface.surface.duplicate;

@@ -90,6 +90,7 @@ function(cscd_python_module path)
   # An expression keeps generators of several configurations from appending a folder of theirs.
   set_target_properties(cscd_python PROPERTIES OUTPUT_NAME _cscd LIBRARY_OUTPUT_DIRECTORY $<1:${package}>)
   target_link_libraries(cscd_python PRIVATE cscd_static cscd_flags)
+  target_compile_options(cscd_python PRIVATE $<$<CONFIG:Release>:-O1>)  # it hands arrays on, and reckons nothing
   target_compile_definitions(cscd_python PRIVATE CSCD_VERSION="${PROJECT_VERSION}")
   file(GLOB scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${path}/cscd/*.py ${PROJECT_SOURCE_DIR}/${path}/cscd/*.pyi
        ${PROJECT_SOURCE_DIR}/${path}/cscd/py.typed)

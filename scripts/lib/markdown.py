@@ -14,7 +14,7 @@ def table(head, rows, text_columns=1):
 def number(value):
     """A figure as `cscd` writes it (figure_text in core/base/number_text.h): three significant digits, all digits before the point,
     commas between thousands; a dash for nothing."""
-    return "–" if value is None else f"{value:,.0f}" if abs(value) >= 999.5 else f"{value:.3g}"
+    return "–" if value is None else f"{value:,.0f}" if 999.5 <= abs(value) < 1e15 else f"{value:.3g}"
 
 
 def picture(name, title):

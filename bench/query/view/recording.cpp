@@ -128,8 +128,7 @@ void StrategyRecording::add_contact(const Contact& contact, const Motion& motion
   for (int axis = 0; axis < 3; ++axis)
     normal_.push_back(static_cast<std::int8_t>(std::lround(127 * normal[axis])));
   for (const bool second : {false, true})
-    place_.push_back(
-        places.number_of(answer_.names.place_of(answer_.names.triangle_of(contact.pair, second))));
+    place_.push_back(places.number_of(answer_.names.place_of(contact.pair, second)));
 }
 
 // Asks the observers. A cluster goes by the first of its atomic clusters, so that it keeps its number from

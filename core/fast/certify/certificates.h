@@ -152,8 +152,8 @@ class Certificates {
                             const Viewpoint* const (&from)[kCovers], Signs (&seen)[kCovers]);
   void keep_clear_one_rings();
 
-  // What is known of a patch. Most patches are usual, all positive in every cover, from one interval to the
-  // next, and what is certified of them stays as it is.
+  // What is known of a patch. Nearly all stay `usual` from one interval to the next: every cover sees all of
+  // the patch as positive, and what was certified of it before still holds.
   enum class State : std::uint8_t {
     usual,
     unlabelled,  // became usual again; its label is still that of the last interval

@@ -95,7 +95,7 @@ export class ClipAnswer {
     lists.contact_along.push(edges[i] ? share(weights[3 * i]) : 0);
     for (let k = 0; k < 3; ++k) lists.contact_normal.push(Math.round(127 * normals[3 * i + k]));
     for (let k = 0; k < 4; ++k) lists.contact_vertex.push(vertices[4 * i + k]);
-    for (const [t] of sides) lists.contact_place.push(surface.place[t]);
+    for (const [t] of sides) lists.contact_place.push(surface.placeOf(t));
   }
 
   contactOf({ edges, vertices, faces, times, points, normals, weights }, i, sides) {
@@ -171,7 +171,7 @@ export class ClipAnswer {
     return { ...(interval === this.count ? { interval: interval - 1, time: 1 } : { interval, time }), ...this.moment(interval, time) };
   }
   frame(interval, time) { return String(Math.round(100 * this.moment(interval, time).frame) / 100); }
-  momentText(interval, time) { return `frame ${this.frame(interval, time)} (${Number(this.moment(interval, time).seconds.toPrecision(4))} s${this.clip.firstFrame !== 0 ? " into the clip" : ""})`; }
+  momentText(interval, time) { return `frame ${this.frame(interval, time)} (${number(this.moment(interval, time).seconds, 4)} s${this.clip.firstFrame !== 0 ? " into the clip" : ""})`; }
   length(length) { return lengthText({ header: this.surface.header }, length); }
 
   subject() {

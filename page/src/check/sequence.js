@@ -39,10 +39,13 @@ export function readSequence(files) {
   const other = frames.findIndex((one) => one.length !== positions.length);
   if (other >= 0) throw new Error(`${sorted[other].name} has ${frames[other].length / 3} vertices, and ${sorted[0].name} ${positions.length / 3}; a sequence has one surface`);
   const corners = faces.flatMap((face) => cut(face, positions)), fps = 30, last = frames.length - 1;
+  const notes = faces.some((face) => face.length > 4) ? ["faces with more than four corners are cut from their first corner, which cscd query does otherwise"] : [];
+  const loose = positions.length / 3 - new Set(corners).size;
+  if (loose > 0) notes.push(loose === 1 ? "1 vertex is of no face: a point that touches faces, and crosses nothing" : `${loose} vertices are of no face: points that touch faces, and cross nothing`);
   const clip = { name: "", number: 0, start: 0, seconds: last / fps, frames: frames.length, firstFrame: numberOf(sorted[0].name) || 0, second: (frame) => frame / fps };
   return {
     format: "OBJ", up: "y", because: "", centimetres: 0, fps, fpsFrom: "assumed", isSequence: true, vertexCount: positions.length / 3,
-    notes: faces.some((face) => face.length > 4) ? ["faces with more than four corners are cut from their first corner, which cscd query does otherwise"] : [],
+    notes,
     parts: [{ positions, corners }], names: ["the surface"], clips: [clip],
     sample: (_, frame, out) => out.set(frames[frame]),
   };

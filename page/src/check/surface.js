@@ -5,6 +5,7 @@ import { weld, weldedTriangles } from "./weld.js";
 
 const PROBES = 32;  // poses in which seams are looked at, spread over all clips
 const MOST_AT_REST = 500000;
+const POINT = "a point";  // a vertex of no face, for which no triangle stands
 
 function rawCorners({ parts }) {
   const corners = [], part = [];
@@ -41,7 +42,8 @@ export class Surface {
     for (const v of raw.corners) for (let k = 0; k < 3; ++k) low[k] = Math.min(low[k], positions[3 * v + k]), high[k] = Math.max(high[k], positions[3 * v + k]);
     const welded = this.isSequence ? { ...weldedTriangles(raw.corners, Int32Array.from({ length: model.vertexCount }, (_, v) => v)) }
       : weld(raw.corners, positions, Math.hypot(...high.map((x, k) => x - low[k])), probesOf(model));
-    const number = new Int32Array(model.vertexCount).fill(-1);
+    // A sequence is taken as it is: its vertices of no face are points. Models hold many that mean nothing.
+    const number = new Int32Array(model.vertexCount).fill(this.isSequence ? 0 : -1);
     for (const v of welded.corners) number[v] = 0;
     this.rawVertex = Array.from(number.keys()).filter((v) => number[v] === 0);
     this.rawVertex.forEach((v, i) => { number[v] = i; });
@@ -73,7 +75,7 @@ export class Surface {
     const { mesh, model } = this, components = new Map();
     partOf.forEach((p, t) => components.set(p, (components.get(p) ?? new Set()).add(mesh.component[t])));
     const names = model.names.map((name, p) => (name || `mesh ${p}`) + (name && model.names.filter((other) => other === name).length > 1 ? ` (part ${p})` : ""));
-    this.partName = (t) => names[partOf[t]] + (components.get(partOf[t]).size > 1 ? `, component ${mesh.component[t]}` : "");
+    this.partName = (t) => (t === undefined ? POINT : names[partOf[t]] + (components.get(partOf[t]).size > 1 ? `, component ${mesh.component[t]}` : ""));
   }
 
   // Bones are the nodes that move vertices of the surface (scenes/character/skeleton.h).
@@ -132,12 +134,15 @@ export class Surface {
       this.part[t] = numberOf(this.partName(t));
       this.place[t] = bone < 0 ? this.part[t] : numberOf(this.nameOfBone(bone));
     }
+    const hasPoints = Array.from({ length: mesh.vertices }, (_, v) => v).some((v) => mesh.around(v).length === 0);
+    const point = hasPoints ? numberOf(POINT) : 0;
     if (texts.length > 65536) throw new Error("has more than 65536 names of bones and parts; ask cscd query");
     this.texts = texts;
     const labels = new Map();  // of parts, in the order in which they come
     for (let t = 0; t < mesh.triangles; ++t) if (!labels.has(this.part[t])) labels.set(this.part[t], labels.size);
     this.placeNumber = (t) => (this.boneOf(t) < 0 ? -1 - labels.get(this.part[t]) : this.boneOf(t));
-    this.placeName = (t) => texts[this.place[t]];
+    this.placeOf = (t) => (t === undefined ? point : this.place[t]);
+    this.placeName = (t) => texts[this.placeOf(t)];
   }
 
   // Where the head and the tail of each bone are in the pose that was sampled last.
