@@ -69,7 +69,7 @@ json side_json(const Input& input, const SurfaceNames& names, const FeaturePair&
   const TriangleId triangle = names.triangle_of(pair, second);
   const std::vector<VertexId> vertices = side_vertices(input.mesh, pair, second);
   const bool is_point = input.mesh.triangles_at(vertices.front()).empty();
-  json out = {{"part", is_point ? "a point" : names.part_of(triangle)}, {"bone", nullptr}};
+  json out = {{"part", is_point ? SurfaceNames::kPoint : names.part_of(triangle)}, {"bone", nullptr}};
   const std::string bone = names.bone_of(vertices.front());
   if (!bone.empty()) out["bone"] = bone;
   if (input.import) out["source"] = source_json(input, pair, second, triangle);

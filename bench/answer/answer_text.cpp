@@ -306,7 +306,7 @@ Sentences sentences(const ClipAnswer& answer) {
                                                            " (--keep-rest-crossings counts both)"
                                 : input.is_one_pose ? ""
                                                     : "; counted, as asked";
-    if (!rest.crossing.empty() && !input.is_one_pose)
+    if (!rest.crossing.empty() && (!input.is_one_pose || answer.rest_left_out))
       out.rest = "crosses " + at +
                  listed(rest.crossing,
                         [](const NamePair& both, std::size_t count) {

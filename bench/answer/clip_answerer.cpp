@@ -25,9 +25,13 @@ double patience_of(const AnswerRequest& request, const Input& input) {
   return request.interval_seconds.value_or(input.import ? kImportedIntervalSeconds : 0);
 }
 
-// The one pose of a file is asked about as it is, whatever is left out of motions.
+// The one pose of a file is asked about as it is, whatever is left out of motions. Of a clip of one pose
+// beside clips that move, what crosses at rest is left out as of those.
 AnswerRequest as_input_allows(AnswerRequest request, const Input& input) {
-  if (input.is_one_pose) request.answers.keep_rest_crossings = true;
+  const auto moves = [](const scenes::ImportReport::Clip& clip) { return clip.frames > 1; };
+  const bool has_rest =
+      input.import && !input.clip->header().rest.empty() && std::ranges::any_of(input.import->clips, moves);
+  if (input.is_one_pose && !has_rest) request.answers.keep_rest_crossings = true;
   return request;
 }
 
@@ -189,7 +193,7 @@ void for_each_clip(const AnswerRequest& request, Input first,
   };
   const bool something_moves = std::ranges::any_of(clips, moves);
   for (std::size_t clip = 0; clip < clips.size(); ++clip) {
-    if (something_moves && !moves(clips[clip])) {
+    if (model.true_motion && something_moves && !moves(clips[clip])) {
       pass_over(clip);
       continue;
     }

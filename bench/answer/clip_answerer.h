@@ -65,9 +65,10 @@ class ClipAnswerer {
   std::optional<OverlapEvents> events_;
 };
 
-// Hands each clip of a model file to `take`, by its number and opened, in the order of the file. Clips of one
-// pose, which nothing moves, go to `pass_over` unless all are such. `first` is the file with one of its clips
-// opened, or as a survey. Throws InputError where what is asked is about one clip.
+// Hands each clip of a model file to `take`, by its number and opened, in the order of the file. Where the
+// true motion is asked, clips of one pose, which have none, go to `pass_over` unless all are such. `first` is
+// the file with one of its clips opened, or as a survey. Throws InputError where what is asked is about one
+// clip.
 void for_each_clip(const AnswerRequest& request, Input first,
                    const std::function<void(std::size_t, Input)>& take,
                    const std::function<void(std::size_t)>& pass_over);

@@ -175,7 +175,7 @@ std::string true_predicate(const Input& input, const TrueSummary& s, const std::
 }
 
 std::string true_motion_text(const Input& input, const TrueSummary& s) {
-  if (!input.import || input.bone_names.empty()) return {};
+  if (!input.import || input.bone_names.empty() || input.is_one_pose) return {};
   if (!input.motion)
     return "  answered for straight lines between frames; --true-motion asks about the paths on which bones "
            "carry "

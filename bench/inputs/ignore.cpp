@@ -6,6 +6,7 @@
 
 #include "bench/inputs/surface_names.h"
 #include "core/base/error.h"
+#include "core/hierarchy/loose_vertices.h"
 #include "scenes/base/closest_name.h"
 #include "scenes/base/joined.h"
 
@@ -113,6 +114,8 @@ void ignore(Input& input, const IgnoreRequest& request) {
   std::set<std::string> known;
   for (std::size_t t = 0; t < input.mesh.triangle_count(); ++t)
     known.merge(names_of(input, names, TriangleId{static_cast<std::int32_t>(t)}));
+  const bool has_points = count_loose_vertices(input.mesh).count > 0;
+  if (has_points) known.insert(SurfaceNames::kPoint);
   auto ignored = std::make_shared<Ignored>();
   ignored->asked = request;
   std::set<std::string> mentioned;
@@ -122,18 +125,21 @@ void ignore(Input& input, const IgnoreRequest& request) {
   }
 
   std::map<Group, std::int32_t> groups;
-  std::vector<std::int32_t> group_of_triangle;
-  for (std::size_t t = 0; t < input.mesh.triangle_count(); ++t) {
-    const TriangleId triangle{static_cast<std::int32_t>(t)};
-    const std::set<std::string> own = names_of(input, names, triangle);
-    Group group;
+  const auto number_of = [&](Group group, const std::set<std::string>& own) {
     for (const std::string& pattern : mentioned)
       if (std::ranges::any_of(own, [&](const std::string& name) { return is_called(name, pattern); }))
         group.called.insert(pattern);
-    if (request.neighbours) group.bone = names.bone_of(triangle);
     const auto number = static_cast<std::int32_t>(groups.size());
-    group_of_triangle.push_back(groups.try_emplace(std::move(group), number).first->second);
+    return groups.try_emplace(std::move(group), number).first->second;
+  };
+  std::vector<std::int32_t> group_of_triangle;
+  for (std::size_t t = 0; t < input.mesh.triangle_count(); ++t) {
+    const TriangleId triangle{static_cast<std::int32_t>(t)};
+    Group group;
+    if (request.neighbours) group.bone = names.bone_of(triangle);
+    group_of_triangle.push_back(number_of(std::move(group), names_of(input, names, triangle)));
   }
+  const std::int32_t points = has_points ? number_of({}, {SurfaceNames::kPoint}) : -1;
   const std::vector<std::set<std::int32_t>> near = bones_within(parent, request.neighbours.value_or(0));
   std::vector<GroupPair> pairs;
   for (const auto& first : groups)
@@ -145,7 +151,7 @@ void ignore(Input& input, const IgnoreRequest& request) {
           std::ranges::any_of(ignored->names, [&](const Names& both) { return meet(both, a, b); }))
         pairs.emplace_back(first.second, second.second);
     }
-  ignored->triangles.set_triangle_groups(input.mesh, std::move(group_of_triangle), pairs);
+  ignored->triangles.set_triangle_groups(input.mesh, std::move(group_of_triangle), pairs, points);
   input.ignored = std::move(ignored);
 }
 

@@ -1,6 +1,7 @@
 #include "bench/inputs/import.h"
 
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -220,8 +221,8 @@ std::string clip_text(const ImportReport& r) {
     const std::string title = clip_title(r);
     std::string text = (title.empty() ? "" : title + ": ") + number(clip->seconds) + " s as " +
                        many(static_cast<std::size_t>(clip->frames), "frame") + ", from frame " +
-                       number(clip->first_frame) + " to " + number(frame_at(r, clip->seconds)) + ", " +
-                       rate_text(r);
+                       number(clip->first_frame) + " to " +
+                       number(std::round(1e3 * frame_at(r, clip->seconds)) / 1e3) + ", " + rate_text(r);
     if (r.joints > 0)
       text += "; drives " + std::to_string(clip->driven) + " of " +
               many(static_cast<std::size_t>(r.joints), "bone");

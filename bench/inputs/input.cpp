@@ -163,8 +163,12 @@ Input open_input(const std::string& name, const ModelOptions& options) {
   }
   // What bones carry may move between the frames, and predicted steps without the frames.
   const bool is_frames_alone = input.clip->header().bone_parent.empty() && !input.clip->header().predicted;
-  if (is_frames_alone && !options.import.survey)
-    input.is_one_pose = input.is_one_pose || is_still(*input.clip, input.reference);
+  if (is_frames_alone && !options.import.survey && !input.is_one_pose) {
+    input.is_one_pose = is_still(*input.clip, input.reference);
+    if (input.is_one_pose && input.import)
+      input.import->notes.push_back("its " + std::to_string(input.clip->frame_count()) +
+                                    " frames are all alike: one pose");
+  }
   input.up = std::move(up);
   return input;
 }

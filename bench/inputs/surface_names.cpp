@@ -133,7 +133,7 @@ TriangleId SurfaceNames::triangle_of(const FeaturePair& pair, bool second) const
 
 std::string SurfaceNames::place_of(const FeaturePair& pair, bool second) const {
   const bool is_vertex = pair.kind == FeaturePair::Kind::vertex_face && !second;
-  if (is_vertex && input_.mesh.triangles_at(VertexId{pair.a}).empty()) return "a point";
+  if (is_vertex && input_.mesh.triangles_at(VertexId{pair.a}).empty()) return kPoint;
   return place_of(triangle_of(pair, second));
 }
 

@@ -34,7 +34,8 @@ class SurfaceNames {
   // A triangle that has the first, or the second, feature of a pair. Both belong to one pair of triangles
   // that is not ignored, where there is one.
   TriangleId triangle_of(const FeaturePair& pair, bool second) const;
-  // Where the first, or the second, feature of a pair is: a vertex of no face is "a point".
+  // Where the first, or the second, feature of a pair is. A vertex of no face is at kPoint.
+  static constexpr const char* kPoint = "a point";
   std::string place_of(const FeaturePair& pair, bool second) const;
 
  private:

@@ -251,6 +251,25 @@ TEST_F(AtRest, OnePoseIsAnsweredByItself) {
   EXPECT_TRUE(answer("figure.glb --clip walk")["summary"]["verdict"] == "clear");
 }
 
+// Mutations: a clip of one pose is passed over; what crosses at rest, as eyes in a head do, counts in it.
+TEST_F(AtRest, AClipOfOnePoseIsAnsweredBesideOthers) {
+  scenes::Character figure = scenes::walking_figure();
+  scenes::Animation& hugged = figure.animations[1];
+  hugged.seconds = 0;
+  for (scenes::Channel& channel : hugged.channels) channel.rotations = {{0, channel.rotations.back().value}};
+  put("posed.glb", scenes::to_glb(figure));
+  const json all = answer("posed.glb");
+  ASSERT_EQ(all["clips"].size(), 2u);
+  EXPECT_EQ(all["clips"][0]["summary"]["verdict"], "clear");
+  const json& pose = all["clips"][1];
+  EXPECT_EQ(pose["one_pose"], true);
+  EXPECT_EQ(pose["summary"]["verdict"], "intersects_at_start") << sentence(pose);
+  EXPECT_FALSE(has(pose["summary"]["met"].dump(), "eye")) << pose["summary"]["met"];
+  EXPECT_EQ(run("cscd query posed.glb --fail-on-contact").status, 3);
+  EXPECT_EQ(run("cscd query posed.glb --fail-deeper-than 1cm").status, 3);
+  EXPECT_EQ(answer("posed.glb --true-motion")["clips"].size(), 1u);
+}
+
 // Of faces with the same corners one is kept: with two, no depth would be known. Mutation: all are kept.
 TEST_F(AtRest, IdenticalTrianglesAreLeftOutAndSaid) {
   for (const std::string twice : {"f 1 3 4\nf 4 1 3\n", "f 1 4 3\nf 4 3 1\n"}) {

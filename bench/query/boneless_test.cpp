@@ -1,5 +1,6 @@
 // Meshes without bones: what soft bodies and simulations leave.
 #include <algorithm>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -51,6 +52,31 @@ TEST(Boneless, QueryTakesTheBestStrategyAndFindsEveryContact) {
     at_stake += judge["starts_embedded"].get<bool>() && judge["collides"].get<bool>();
   }
   EXPECT_GE(at_stake, 10u);
+}
+
+// A vertex of no face is a point of a sequence, as it is of a point cache. Mutations: it is left out; no name
+// stands for it, so that nothing ignores it.
+TEST(Boneless, PointsOfASequenceTouchFacesAndCanBeIgnored) {
+  const Scratch scratch;
+  for (const auto& [frame, z] : {std::pair("0", "1"), {"1", "-1"}})
+    std::ofstream(scratch / ("p." + std::string(frame) + ".obj"))
+        << "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 " << z << "\nf 1 2 3\n";
+  const std::string file = scratch / "p.0.obj";
+  const nlohmann::json answer = document_of({"query", file});
+  EXPECT_EQ(answer["import"]["notes"][1],
+            "1 vertex is of no face: a point that touches faces, and crosses nothing");
+  EXPECT_EQ(answer["summary"]["met"][0]["first"], "a point");
+  const nlohmann::json& contact = answer["intervals"][0]["contacts"][0];
+  EXPECT_EQ(contact["time"], 0.5);
+  EXPECT_EQ(contact["first"]["part"], "a point");
+  EXPECT_EQ(contact["first"]["source"]["vertices"], nlohmann::json({3}));
+  for (const char* pair : {"*:*", "a point:*", "the surface:*", "the surface:a point"}) {
+    const nlohmann::json without = document_of({"query", file, "--ignore", pair});
+    EXPECT_EQ(without["summary"]["verdict"], "clear") << pair;
+    EXPECT_EQ(without["summary"]["ignored"][0]["contacts"], 1) << pair << without["summary"]["ignored"];
+  }
+  EXPECT_EQ(document_of({"query", file, "--ignore", "the surface:the surface"})["summary"]["verdict"],
+            "touches");
 }
 
 TEST(Boneless, InspectSaysWhoTakesThem) {

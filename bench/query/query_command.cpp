@@ -53,7 +53,9 @@ struct Said {
   json headline;                                     // of a clip
 };
 
-Said say_clip(const QueryOptions& options, Input input, JsonStream* document, bool is_brief = false) {
+// `told` are the notes of the file that were printed, where this is one of its clips.
+Said say_clip(const QueryOptions& options, Input input, JsonStream* document,
+              std::set<std::string>* told = nullptr) {
   require_unit(input, options.fail_deeper_than, "--fail-deeper-than");
   ClipAnswerer asked(options, std::move(input));
   const ClipAnswer& answer = asked.answers().front();
@@ -64,7 +66,10 @@ Said say_clip(const QueryOptions& options, Input input, JsonStream* document, bo
     if (json && !pose.is_last()) json->add(answer, pose.answers.front(), pose.interval.motion);
   });
   if (json) json->finish(answer);
-  std::printf("%s", (is_brief ? brief_clip_text(answer) : clip_text(answer)).c_str());
+  std::printf("%s", (told != nullptr ? brief_clip_text(answer) : clip_text(answer)).c_str());
+  if (told != nullptr)
+    for (const std::string& note : answer.input.import->notes)
+      if (told->insert(note).second) std::printf("  note: %s\n", note.c_str());
   Said said;
   said.verdict = answer.verdict();
   said.apart = verdict_exceptions(answer);
@@ -148,8 +153,9 @@ Said say_all_clips(const QueryOptions& options, Input first, JsonStream* documen
     document->begin_array();
   }
   AllVerdicts verdicts;
+  std::set<std::string> told(seen.notes.begin(), seen.notes.end());
   const auto take = [&](std::size_t clip, Input input) {
-    const Said one = say_clip(options, std::move(input), document, seen.clips.size() > 1);
+    const Said one = say_clip(options, std::move(input), document, seen.clips.size() > 1 ? &told : nullptr);
     verdicts.add(seen.clips[clip].name, clip, one);
     if (collides(one.verdict)) all.verdict = one.verdict;
     all.too_deep = all.too_deep || one.too_deep;

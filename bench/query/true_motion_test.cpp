@@ -113,8 +113,9 @@ TEST_F(TrueMotionOption, SaysFirstWhatTheTrueMotionDoes) {
   EXPECT_EQ(found["summary"]["sentence"].get<std::string>().find("does not"), std::string::npos);
 }
 
-// A frame lies between two keys that are a millionth of a second apart, and one of them stands for it.
-// Mutation: a frame that is not where its key is counts as a fault of the program.
+// A frame lies between two keys that are a millionth of a second apart, and one of them stands for it. Keys
+// of several bones that lie a hair beside a frame are on it. Mutation: a frame that is not where its key is
+// counts as a fault of the program.
 TEST_F(TrueMotionOption, TakesKeysThatAreNextToEachOther) {
   scenes::Character figure = scenes::walking_figure();
   scenes::Channel& pelvis = figure.animations[0].channels.back();
@@ -134,7 +135,8 @@ TEST_F(TrueMotionOption, TakesKeysThatAreNextToEachOther) {
   for (const char* file : {"ramp.glb", "step.gltf"}) {
     const json found = answer(std::string(file) + " --clip walk --fps 12 --true-motion");
     for (const json& interval : found["intervals"])
-      EXPECT_EQ(interval["true_motion"]["verdict"], interval["index"] == 4 ? "undecided" : "clear")
+      EXPECT_EQ(interval["true_motion"]["verdict"],
+                std::string(file) == "ramp.glb" && interval["index"] == 4 ? "undecided" : "clear")
           << file << ": " << interval["true_motion"];
   }
 }

@@ -114,8 +114,11 @@ void Exclusions::set_groups(const TriangleMesh& mesh, std::vector<std::int32_t> 
 }
 
 void Exclusions::set_triangle_groups(const TriangleMesh& mesh, std::vector<std::int32_t> group,
-                                     std::span<const std::pair<std::int32_t, std::int32_t>> ignoring) {
+                                     std::span<const std::pair<std::int32_t, std::int32_t>> ignoring,
+                                     std::int32_t points) {
   require_one_each(mesh.triangle_count(), group.size(), "group", "triangles");
+  points_ = points < 0 ? 0 : group.size();
+  if (points_ > 0) group.push_back(points);
   triangle_groups_ = groups_of(std::move(group), "triangle", ignoring);
 }
 
@@ -180,7 +183,8 @@ bool Exclusions::excludes(const TriangleMesh& mesh, const FeaturePair& pair) con
   const std::span<const TriangleId> first =
       face ? mesh.triangles_at(VertexId{pair.a}) : mesh.triangles_at(EdgeId{pair.a});
   const std::span<const TriangleId> second = face ? std::span(&itself, 1) : mesh.triangles_at(EdgeId{pair.b});
-  if (first.empty()) return false;  // no pair of triangles carries what a loose vertex does
+  if (first.empty())  // no pair of triangles carries what a loose vertex does
+    return points_ > 0 && triangle_groups_.ignore(points_, +itself);
   return std::ranges::all_of(first, [&](TriangleId s) {
     return std::ranges::all_of(second, [&](TriangleId t) {
       return s == t || excludes(mesh, TrianglePair{s, t});

@@ -30,9 +30,11 @@ class Exclusions {
   // holds numbers from 0. Throws InputError for a wrong size, and for a pair with a group that no vertex has.
   void set_groups(const TriangleMesh& mesh, std::vector<std::int32_t> group,
                   std::span<const std::pair<std::int32_t, std::int32_t>> ignoring);
-  // Does for triangles, whose groups `group`, [triangles], holds, what set_groups() does for vertices.
+  // Does for triangles, whose groups `group`, [triangles], holds, what set_groups() does for vertices. All
+  // vertices of no triangle are of the group `points`, if that is not negative.
   void set_triangle_groups(const TriangleMesh& mesh, std::vector<std::int32_t> group,
-                           std::span<const std::pair<std::int32_t, std::int32_t>> ignoring);
+                           std::span<const std::pair<std::int32_t, std::int32_t>> ignoring,
+                           std::int32_t points = -1);
   // Excludes pairs of vertices, and pairs of triangles. Throws InputError for an index out of range.
   void exclude(const TriangleMesh& mesh, std::span<const std::pair<VertexId, VertexId>> pairs);
   void exclude(const TriangleMesh& mesh, std::span<const std::pair<TriangleId, TriangleId>> pairs);
@@ -62,6 +64,7 @@ class Exclusions {
 
   std::vector<bool> rigid_;
   Groups vertex_groups_, triangle_groups_;
+  std::size_t points_ = 0;  // where points have a group: its place behind those of the triangles
   std::vector<std::uint64_t> vertex_pairs_;    // sorted; the smaller index in the upper half
   std::vector<std::uint64_t> triangle_pairs_;  // sorted; the smaller index in the upper half
   std::vector<Vec3> reference_;

@@ -84,7 +84,7 @@ class Check {
   hear(run, { kind, number, ...data }) {
     this.wait(run);
     if (kind === "refused") this.ask(`${data.name}: ${data.text}${/[.!?]$/.test(data.text) ? "" : "."} It was not checked.`);
-    if (kind === "read") Object.assign(run, { header: data.header, titles: data.clips, intervals: data.intervals, passedOver: data.passedOver });
+    if (kind === "read") Object.assign(run, { header: data.header, titles: data.clips, intervals: data.intervals });
     if (kind === "frames") {
       const title = run.titles[number];
       run.clips[number] = { title, clip: data.clip, frames: data.arrays, ...unanswered(run.header.name, title, data.clip) };
@@ -92,7 +92,7 @@ class Check {
     }
     if (kind === "progress") this.say(`clip ${number + 1} of ${run.titles.length}, '${run.titles[number]}': frame ${data.interval} of ${run.clips[number].clip.frames - 1}`, data.done / run.intervals);
     if (kind === "answer") Object.assign(run.clips[number], data, { isAnswered: true, strategies: [data.strategy] });
-    if (kind === "done") this.finish(`${this.answered.length > 1 ? `${this.answered.length} clips ` : ""}answered in ${((performance.now() - run.begun) / 1000).toFixed(1)} s${run.passedOver ? `; ${run.passedOver} of one pose passed over` : ""}`);
+    if (kind === "done") this.finish(`${this.answered.length > 1 ? `${this.answered.length} clips ` : ""}answered in ${((performance.now() - run.begun) / 1000).toFixed(1)} s`);
   }
 
   get answered() { return this.run.clips.filter(({ isAnswered }) => isAnswered); }

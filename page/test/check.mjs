@@ -281,8 +281,9 @@ try {
   // A page of several clips shows another one by its name.
   const clips = page.locator("#clips option");
   if ((await clips.count()) > 1) {
-    const other = (await page.locator("#clips").inputValue()) === "0" ? 1 : 0, title = (await clips.nth(other).textContent()).slice(2);
-    await page.selectOption("#clips", String(other));
+    const other = page.locator(`#clips option:not([value="${await page.locator("#clips").inputValue()}"])`).first();
+    const title = (await other.textContent()).slice(2).replace(/, [^,]* deep$/, "");
+    await page.selectOption("#clips", await other.getAttribute("value"));
     await page.waitForFunction((name) => window.cscd && document.getElementById("verdict").textContent.includes(`clip '${name}'`), title)
       .catch(() => { throw new Error(`the clip ${title} is not shown`); });
     await picture("other-clip");

@@ -65,6 +65,9 @@ TEST(MeshCaches, SayWhenTheirFramesAre) {
   const std::string halves = with(MeshCacheFormat::pc2, 20, {10.0F, 0.5F});
   EXPECT_TRUE(says(test::refusal([&] { MeshCache(MeshCacheFormat::pc2, halves); }),
                    "its samples are 0.5 frames apart"));
+  std::string other = named;
+  other[12] = 2;
+  EXPECT_TRUE(says(test::refusal([&] { MeshCache(MeshCacheFormat::pc2, other); }), "is of version 2 of PC2"));
 }
 
 TEST(VtkFiles, EscapeNames) {

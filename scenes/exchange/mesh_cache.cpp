@@ -63,6 +63,9 @@ MeshCache::MeshCache(MeshCacheFormat format, std::string_view bytes) : format_(f
   if (bytes.size() < fixed || (pc2 && !bytes.starts_with(kPc2Begin)))
     throw InputError(std::string("is no ") + (pc2 ? "PC2" : "MDD") + " cache; export it again");
   const auto count = [&](std::size_t at) { return bits_of(bytes.substr(at, 4), is_big(format)); };
+  if (pc2 && count(kPc2Begin.size()) != 1)
+    throw InputError("is of version " + std::to_string(count(kPc2Begin.size())) +
+                     " of PC2, and version 1 alone is known; export it again");
   vertices_ = count(pc2 ? 16 : 4);
   frames_ = count(pc2 ? 28 : 0);
   const std::uint64_t head = fixed + (pc2 ? 0 : 4 * frames_), each = 12 * vertices_;

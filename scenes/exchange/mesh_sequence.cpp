@@ -93,7 +93,7 @@ std::vector<std::string> notes_of(const SurfaceFile& surface, const CutFaces& fa
                                   const std::string& frames) {
   std::vector<std::string> notes = surface.notes;
   if (surface.points_and_lines > 0)
-    notes.push_back(std::to_string(surface.points_and_lines) + " points and lines left out");
+    notes.push_back(std::to_string(surface.points_and_lines) + " lines of points or lines (p, l) left out");
   if (!faces.note.empty()) notes.push_back(faces.note);
   if (!frames.empty()) notes.push_back(frames);
   return notes;

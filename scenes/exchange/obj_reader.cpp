@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -113,7 +115,8 @@ class ObjReader {
     // A weight, which is of curves alone, or a colour may follow, or both.
     std::size_t further = 0;
     for (std::string_view more = word(); !more.empty(); more = word(), ++further)
-      if (!number_of(more)) lines_.fail(lines_.quoted(more) + " stands behind a vertex and is no number");
+      if (const std::optional<double> number = number_of(more); !number || !std::isfinite(*number))
+        lines_.fail(lines_.quoted(more) + " stands behind a vertex and is no number");
     if (further == 2 || further > 4)
       lines_.fail("a vertex has " + std::to_string(3 + further) +
                   " numbers; write three, or a colour behind them");

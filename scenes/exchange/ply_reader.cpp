@@ -74,6 +74,7 @@ PlyHeader read_header(TextLines& lines) {
       header.ascii = format == "ascii";
       header.big = format == "binary_big_endian";
       known = header.ascii || header.big || format == "binary_little_endian";
+      if (!known) lines.fail(lines.quoted(format) + " is no format of a PLY file");
       if (const std::string_view version = lines.word(); version != "1.0")
         lines.fail("the version of PLY is " + lines.quoted(version) + ", and 1.0 alone is known");
     } else if (word == "element") {

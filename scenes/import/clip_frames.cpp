@@ -16,9 +16,8 @@ namespace {
 // A clip ends with a whole frame if its length differs from a whole number of frames by less than this.
 // Times in files are single precision, so their lengths are seldom exact.
 constexpr double kNearFrame = 1e-3;
-// How far rounding to single precision may move two times, the key's and that of the clip's start, as a share
-// of the later one.
-constexpr double kSingle = 0x1p-23;
+// How far rounding to single precision moves a time, as a share of it, where a few of them are added.
+constexpr double kSingle = 0x1p-21;
 // At most this many frames of a clip, and spans between its keys, are looked at to see whether the clip moves
 // the surface.
 constexpr std::size_t kMostLooks = 4096;
@@ -152,17 +151,20 @@ Movement movement_of(const Character& character, const Animation& animation, con
       if (used[v] && (now[v] - first[v]).cwiseAbs().maxCoeff() > kMoves * diagonal) return true;
     return false;
   };
-  const auto second_of = [&](double frame) {
-    return frame / static_cast<double>(frames - 1) * animation.seconds;
+  // Of a clip of very many frames, some are looked at.
+  const std::size_t all = frames_of(animation.seconds, fps);
+  const auto second_of = [&](std::size_t frame) {
+    return second_of_frame(frame * (all - 1) / std::max<std::size_t>(1, frames - 1), animation.seconds, fps);
   };
   skin_at(0, first);
   for (std::size_t i = 1; i < frames; ++i)
-    if (moves_at(second_of(static_cast<double>(i)))) return Movement::at_frames;
+    if (moves_at(second_of(i))) return Movement::at_frames;
   if (frames < 2) return Movement::none;
   if (std::ranges::any_of(seconds_of_changes(animation), moves_at)) return Movement::between_frames;
   for (std::size_t k = 1, looks = 0; k <= kLooksBetween; ++k)
     for (std::size_t i = 0; i + 1 < frames && looks < kMostLooks; ++i, ++looks)
-      if (moves_at(second_of(static_cast<double>(i) + share_between(k)))) return Movement::between_frames;
+      if (moves_at(std::lerp(second_of(i), second_of(i + 1), share_between(k))))
+        return Movement::between_frames;
   return Movement::none;
 }
 
@@ -232,7 +234,8 @@ Frames survey(const Character& character, const Pose& bound) {
 }  // namespace
 
 std::size_t frames_of(double seconds, double fps) {
-  const double frames = seconds * fps;
+  constexpr double kMost = 1e15;  // which is refused, whatever the memory
+  const double frames = std::min(seconds * fps, kMost);
   const double whole = std::round(frames);
   return static_cast<std::size_t>(std::abs(frames - whole) <= kNearFrame ? whole : std::ceil(frames)) + 1;
 }
@@ -246,18 +249,23 @@ double frame_number(double seconds, double fps) {
   return std::abs(number - whole) <= kNearFrame ? whole : number;
 }
 
-void put_jumps_on_frames(Character& character, double fps) {
+void put_keys_on_frames(Character& character, double fps) {
   for (Animation& clip : character.animations) {
+    // The frame's time where a key is meant for a frame, or else its own.
+    const auto meant = [&](double time) {
+      const double frame = std::round((time - clip.start) * fps);
+      if (!(frame >= 0) || !(frame <= clip.seconds * fps + 1)) return time;
+      const double there = clip.start + second_of_frame(static_cast<std::size_t>(frame), clip.seconds, fps);
+      const double rounding = std::min(kSingle * std::abs(time), 0.25 / fps);
+      return std::abs(there - time) <= std::max(kNearFrame / fps, rounding) ? there : time;
+    };
+    // Of neighbours that are meant for one frame, none is moved: they are a jump between two frames.
     const auto put = [&](auto& keys) {
-      for (std::size_t i = 1; i < keys.size(); ++i) {
-        if (keys[i - 1].next != Between::constant) continue;
-        const double frame = std::round((keys[i].time - clip.start) * fps);
-        if (!(frame >= 0) || !(frame <= clip.seconds * fps + 1)) continue;
-        const double time = clip.start + second_of_frame(static_cast<std::size_t>(frame), clip.seconds, fps);
-        const bool is_between = time > keys[i - 1].time && (i + 1 == keys.size() || time < keys[i + 1].time);
-        if (is_between && std::abs(time - keys[i].time) <= kSingle * std::abs(keys[i].time))
-          keys[i].time = time;
-      }
+      std::vector<double> times(keys.size());
+      for (std::size_t i = 0; i < keys.size(); ++i) times[i] = meant(keys[i].time);
+      for (std::size_t i = 0; i < keys.size(); ++i)
+        if ((i == 0 || times[i - 1] < times[i]) && (i + 1 == keys.size() || times[i] < times[i + 1]))
+          keys[i].time = times[i];
     };
     const auto put_all = [&](auto& layered) {
       for (Curve& curve : layered.base.axis) put(curve.keys);
@@ -298,7 +306,7 @@ Frames plan_frames(const Character& character, const Pose& bound, const std::vec
   if (!is_one_pose && lead_in == 0 &&
       movement_of(character, animation, used, diagonal, report.fps) == Movement::between_frames)
     report.notes.push_back(
-        "moves between its frames alone: at " + exact_text(report.fps) +
+        "clip '" + animation.name + "' moves between its frames alone: at " + exact_text(report.fps) +
         " a second, all frames show one pose; give more with --fps, or ask for --true-motion");
   const auto moment = [&character, &bound, animation, fps = report.fps, lead_in](std::size_t frame) {
     if (frame >= lead_in)

@@ -26,10 +26,10 @@ double second_of_frame(std::size_t frame, double seconds, double fps);
 // Returns the number of the frame at a moment of the file's time line, whose frame 0 is at 0 seconds.
 double frame_number(double seconds, double fps);
 
-// Moves the keys at which a value jumps to the frame that they are meant for, where rounding to single
-// precision explains how far they are from it. A key that lies behind its frame would leave the frame the
-// value before the jump.
-void put_jumps_on_frames(Character& character, double fps);
+// Moves the keys that lie a hair beside a frame onto it, because times in files are rounded. A jump whose key
+// lies behind its frame would leave the frame the value before the jump, and a pulse of one frame could lie
+// between two frames.
+void put_keys_on_frames(Character& character, double fps);
 
 // The moments that the import writes, one after the other.
 struct Frames {

@@ -179,7 +179,7 @@ ImportReport convert(Character character, const ImportOptions& options, const Ch
                      const std::filesystem::path& cache, const std::filesystem::path& sources) {
   ImportReport report;
   describe(character, options, report);
-  put_jumps_on_frames(character, report.fps);
+  put_keys_on_frames(character, report.fps);
   const RawSurface raw = raw_surface(character);
   const ChosenSurface chosen = choose_surface(character, raw, options, report);
   std::vector<bool> used(raw.positions.size(), false);
@@ -264,8 +264,10 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
   }
   writer.finish();
   report.notes = sequence->notes();
-  if (const std::size_t loose = loose_vertices(vertices, sequence->triangles()); loose > 0)
-    report.notes.push_back(note_on_points(loose));
+  std::size_t points = 0;
+  for (std::size_t v = 0; v < vertices; ++v)
+    points += mesh.triangles_at(VertexId{static_cast<std::int32_t>(v)}).empty();
+  if (points > 0) report.notes.push_back(note_on_points(points));
   return report;
 }
 

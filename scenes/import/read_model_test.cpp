@@ -132,6 +132,15 @@ TEST_F(Model, ReadsASkinnedAnimation) {
   EXPECT_LT(still, 1e-6);
 }
 
+// Mutation: assimp takes a comma for a decimal point.
+TEST_F(Model, RefusesKeysOfMoreValuesThanTheyCount) {
+  std::string text = kXFile;
+  const std::string three = "4800; 3; 1.0, 2.0, 0.0";
+  text.replace(text.find(three), three.size(), "4800; 3; 1,0, 2.0, 0.0");
+  EXPECT_TRUE(says(test::refusal([&] { read_model(write("flag.x", text), {}); }),
+                   "an animation key has more values than it counts"));
+}
+
 // The clip lasts 4800 ticks. Where the file does not give the ticks a second, 25 are taken.
 TEST_F(Model, TicksPerSecondOfAnyKindBecomeSeconds) {
   for (const int ticks : {1000, 24, 4800, 120, 0}) {

@@ -119,23 +119,16 @@ ChosenSurface choose(const WeldedTriangles& surface, std::size_t raw_vertices, c
 
 }  // namespace
 
-std::string note_on_points(std::size_t loose) {
-  return std::to_string(loose) +
-         (loose == 1 ? " vertex is of no face: a point that touches faces, and crosses nothing"
+std::string note_on_points(std::size_t count) {
+  return std::to_string(count) +
+         (count == 1 ? " vertex is of no face: a point that touches faces, and crosses nothing"
                      : " vertices are of no face: points that touch faces, and cross nothing");
 }
 
-std::string note_on_loose_vertices(std::size_t loose) {
-  return std::to_string(loose) +
-         (loose == 1 ? " vertex is of no face and is" : " vertices are of no face and are") +
-         " left out: no answer is about " + (loose == 1 ? "it" : "them");
-}
-
-std::size_t loose_vertices(std::size_t vertices, std::span<const RawTriangle> triangles) {
-  std::vector<bool> used(vertices, false);
-  for (const RawTriangle& t : triangles)
-    for (const std::int32_t corner : t) used[static_cast<std::size_t>(corner)] = true;
-  return static_cast<std::size_t>(std::ranges::count(used, false));
+std::string note_on_loose_vertices(std::size_t count) {
+  return std::to_string(count) +
+         (count == 1 ? " vertex is of no face and is" : " vertices are of no face and are") +
+         " left out: no answer is about " + (count == 1 ? "it" : "them");
 }
 
 RawSurface raw_surface(const Character& character) {
@@ -167,7 +160,10 @@ RawSurface raw_surface(const Character& character) {
 
 ChosenSurface choose_surface(const Character& character, const RawSurface& raw, const ImportOptions& options,
                              ImportReport& report) {
-  if (const std::size_t loose = loose_vertices(raw.positions.size(), raw.triangles); loose > 0)
+  std::vector<bool> has_face(raw.positions.size(), false);
+  for (const RawTriangle& t : raw.triangles)
+    for (const std::int32_t corner : t) has_face[static_cast<std::size_t>(corner)] = true;
+  if (const auto loose = static_cast<std::size_t>(std::ranges::count(has_face, false)); loose > 0)
     report.notes.push_back(note_on_loose_vertices(loose));
   Welded surface = weld_surface(raw, probes(character), options.weld, report);
   report.collapsed_triangles = surface.surface.collapsed;

@@ -42,11 +42,10 @@ struct ChosenSurface {
   static constexpr std::size_t kFilled = std::numeric_limits<std::size_t>::max();
 };
 
-// How many vertices are of no face. A moving surface is taken as it is, and there they are points, such as
-// particles. Models hold many that mean nothing, so of those they are left out.
-std::size_t loose_vertices(std::size_t vertices, std::span<const RawTriangle> triangles);
-std::string note_on_points(std::size_t loose);
-std::string note_on_loose_vertices(std::size_t loose);
+// Says how many vertices are of no face. A moving surface is taken as it is, and there they are points, such
+// as particles. Models hold many that mean nothing, so of those they are left out.
+std::string note_on_points(std::size_t count);
+std::string note_on_loose_vertices(std::size_t count);
 
 // Welds the raw surface, fills holes, turns components that face inward and chooses components, all as the
 // options say. Records each step in the report. Throws InputError for a weld tolerance and a component that

@@ -92,6 +92,38 @@ class MeshNumbers {
   std::vector<bool> used_;
 };
 
+// Follows the numbers of an animation's keys: their kind, how many keys, and for each key its time, how many
+// values, and these. assimp takes a comma for a decimal point.
+class KeyNumbers {
+ public:
+  void begin() { left_ = 2, next_ = Next::head; }
+
+  // Takes the next word, which stands behind `between`. Returns whether it is one value too many.
+  bool take(std::string_view word, std::string_view between) {
+    if (next_ == Next::none) return false;
+    if (next_ == Next::head) {
+      if (--left_ == 0) next_ = Next::time;
+    } else if (next_ == Next::time) {
+      next_ = Next::values;
+      return has_values_ && between.find(';') == between.npos;
+    } else if (next_ == Next::values) {
+      left_ = 0;
+      std::from_chars(word.data(), word.data() + word.size(), left_);
+      has_values_ = left_ > 0;
+      next_ = left_ > 0 ? Next::value : Next::time;
+    } else if (--left_ == 0) {
+      next_ = Next::time;
+    }
+    return false;
+  }
+
+ private:
+  enum class Next { none, head, time, values, value };
+  Next next_ = Next::none;
+  std::int64_t left_ = 0;
+  bool has_values_ = false;  // of a key before
+};
+
 class XText {
  public:
   explicit XText(std::string_view text) : text_(text) {}
@@ -112,7 +144,8 @@ class XText {
           before = c;
           loose += mesh_.loose();
           mesh_ = {};
-          if (c == '{') begin_mesh();
+          keys_ = {};
+          if (c == '{') begin_block();
           last_ = last_but_one_ = {};
         }
         ++at_;
@@ -126,7 +159,8 @@ class XText {
 
  private:
   // A kind and, as the file likes, a name stand before a brace. Other things may have the name Mesh.
-  void begin_mesh() {
+  void begin_block() {
+    if (last_ == "AnimationKey" || last_but_one_ == "AnimationKey") keys_.begin();
     if (last_but_one_ == "Mesh")
       mesh_ = MeshNumbers(last_);
     else if (last_ == "Mesh" && (last_but_one_.empty() || begins_like_number(last_but_one_)))
@@ -148,16 +182,20 @@ class XText {
       throw InputError("line " + std::to_string(1 + std::ranges::count(text_.substr(0, at_), '\n')) + ": '" +
                        std::string(word.substr(0, 40)) +
                        "' stands where a number has to be; export the file again");
-    at_ = end;
+    if (number && keys_.take(word, text_.substr(behind_, at_ - behind_)))
+      throw InputError("line " + std::to_string(1 + std::ranges::count(text_.substr(0, at_), '\n')) +
+                       ": an animation key has more values than it counts; export the file again");
+    at_ = behind_ = end;
     mesh_.take(word);
     last_but_one_ = last_;
     last_ = word;
   }
 
   std::string_view text_;
-  std::size_t at_ = 0;
+  std::size_t at_ = 0, behind_ = 0;       // behind the last word
   std::string_view last_, last_but_one_;  // the words since the last brace
   MeshNumbers mesh_;
+  KeyNumbers keys_;
 };
 
 }  // namespace

@@ -45,7 +45,7 @@ def records_in(folder):
 
 
 def picture(full):
-    return f"![a hand at rest, the interval in which its fingers first touch, and where they do]({full.link}/contact.png)\n"
+    return f"![a hand at rest, an interval in which its fingers touch, and where they do]({full.link}/contact.png)\n"
 
 
 def door(starts, full):

@@ -19,8 +19,9 @@ export class ClipAnswer {
   constructor(surface, clip) {
     const { mesh, atRest } = surface;
     Object.assign(this, { surface, clip, isPose: clip.frames < 2 });
-    this.rest = this.isPose ? new RestCrossings(mesh, [], atRest.met) : atRest.rest.anew();  // of one pose, nothing is left out
-    this.events = new Events(surface, this.rest, this.isPose ? [] : atRest.depths);
+    this.keepsRest = this.isPose && surface.clips.every(({ frames }) => frames < 2);  // a file of one pose is asked about as it is
+    this.rest = this.keepsRest ? new RestCrossings(mesh, [], atRest.met) : atRest.rest.anew();
+    this.events = new Events(surface, this.rest, this.keepsRest ? [] : atRest.depths);
     this.lists = Object.fromEntries(Object.keys({ ...TYPES, ...OWN_TYPES }).map((name) => [name, []]));
     this.touched = [];
     this.intervals = [];
@@ -270,7 +271,7 @@ export class ClipAnswer {
     this.touched.forEach((bits, i) => touched.set(bits, row * i));
     arrays["s0.proven"] = new Uint8Array(count).fill(1);
     arrays["s0.answerer"] = new Uint8Array(count);
-    const rest = { pairs: this.rest.crossing.length, touching: this.rest.touching.length, left_out: !this.isPose };
+    const rest = { pairs: this.rest.crossing.length, touching: this.rest.touching.length, left_out: !this.keepsRest };
     return {
       events: order.map((i) => ({ event: i, text: this.eventText(events[i]) })), rest, arrays,
       strategy: { name: "the library", answered_by: ["the library for WebAssembly"], covers: 0, has_clusters: false, has_patches: false, summary, sentences, details: this.details() },

@@ -1,6 +1,6 @@
 // Reads a model file with three.js' loaders, and says where each vertex of its parts is in each frame of each clip. Everything is
 // computed in double precision: three.js' own posing rounds to single precision, and `cscd` does not.
-import { InterpolateDiscrete, LoadingManager, Matrix4, PropertyBinding, Quaternion, Texture, Vector3 } from "three";
+import { LoadingManager, Matrix4, PropertyBinding, Quaternion, Texture, Vector3 } from "three";
 import { MeshoptDecoder } from "three/examples/jsm/libs/meshopt_decoder.module.js";
 import { FBXLoader } from "three/examples/jsm/loaders/FBXLoader.js";
 import { GLTFLoader } from "three/examples/jsm/loaders/GLTFLoader.js";
@@ -180,6 +180,17 @@ const framesOf = (seconds, fps) => {
   return (Math.abs(frames - whole) <= 1e-3 ? whole : Math.ceil(frames)) + 1;
 };
 
+// Times of keys that lie a hair beside a frame, on that frame, because times in files are rounded (put_keys_on_frames() of
+// scenes/import/clip_frames.cpp). Neighbours that are meant for one frame stay where they are.
+function onFrames(times, { start, seconds, fps, second }) {
+  const meant = (time) => {
+    const frame = Math.round((time - start) * fps), there = start + second(frame), rounding = Math.min(2 ** -21 * Math.abs(time), 0.25 / fps);
+    return frame >= 0 && frame <= seconds * fps + 1 && Math.abs(there - time) <= Math.max(1e-3 / fps, rounding) ? there : time;
+  };
+  const own = Float64Array.from(times), there = own.map(meant);
+  return own.map((time, i) => ((i === 0 || there[i - 1] < there[i]) && (i + 1 === own.length || there[i] < there[i + 1]) ? there[i] : time));
+}
+
 class Model {
   constructor(scene, animations, { rate, ...said }) {
     Object.assign(this, said, rateOf(animations, rate));
@@ -205,9 +216,11 @@ class Model {
     const start = long.length ? Math.min(...long.map(({ times }) => times[0])) : 0;
     const seconds = long.length ? Math.max(...long.map(({ times }) => times.at(-1))) - start : 0;
     const frames = framesOf(seconds, this.fps), first = start * this.fps, whole = Math.round(first);
-    const drives = tracks.map((track) => ({ to: PropertyBinding.create(this.scene, track.name), from: track.createInterpolant(new Float64Array(track.getValueSize())),
-      late: track.getInterpolation() === InterpolateDiscrete ? 1 + 2 ** -23 : 1 }));  // a jump's time of single precision may lie behind its frame
     const second = (frame) => (frame + 1 >= frames ? seconds : frame / this.fps);
+    const drives = tracks.map((track) => {
+      track.times = onFrames(track.times, { start, seconds, fps: this.fps, second });
+      return { to: PropertyBinding.create(this.scene, track.name), from: track.createInterpolant(new Float64Array(track.getValueSize())) };
+    });
     return { name, number, start, seconds, frames, drives, second, firstFrame: Math.abs(first - whole) <= 1e-3 ? whole : first };
   }
 
@@ -218,7 +231,7 @@ class Model {
       node.scale.copy(scale);
       influences?.forEach((x, i) => { node.morphTargetInfluences[i] = x; });
     }
-    for (const { to, from, late } of drives) to.setValue(from.evaluate(late * time), 0);
+    for (const { to, from } of drives) to.setValue(from.evaluate(time), 0);
     for (const node of this.nodes) {
       node.quaternion.normalize();
       node.updateMatrix();

@@ -55,14 +55,13 @@ function answerOf(surface, clip, tell) {
 async function check({ files, engine }) {
   const [{ name }] = files.filter(({ name }) => /\.(glb|gltf|fbx|obj)$/i.test(name)).concat(files);
   const loading = init(engine), surface = new Surface(await readModel(files), name), { model, mesh } = surface;
-  const moving = model.clips.filter(({ frames }) => frames > 1);
-  const clips = moving.length > 0 ? moving : model.clips.length > 0 ? model.clips : [{ name: "", number: -1, start: 0, seconds: 0, frames: 1, firstFrame: 0 }];
+  const clips = model.clips.length > 0 ? model.clips : [{ name: "", number: -1, start: 0, seconds: 0, frames: 1, firstFrame: 0 }];
   const frames = clips.reduce((sum, clip) => sum + Math.max(2, clip.frames), 0), most = Math.floor(MOST_BYTES / (6 * mesh.vertices));
   if (frames > most) throw new Error(`has ${frames.toLocaleString("en")} frames of ${mesh.vertices.toLocaleString("en")} vertices, more than the ${most.toLocaleString("en")} that this page holds; ask cscd query`);
   const title = (clip) => clip.name || (clip.number < 0 ? "one pose" : `clip ${clip.number}`);
   post("read", {
     header: { schema: "cscd.view/1", name, kind: "model", up: { axis: model.up, because: model.because }, engine_colours: false, thickness: "", texts: surface.texts, true_motion: null, notes: model.notes.map((note) => `${note}.`).join(" "), ...surface.header },
-    clips: clips.map(title), intervals: clips.reduce((sum, clip) => sum + Math.max(1, clip.frames - 1), 0), passedOver: moving.length > 0 ? model.clips.length - moving.length : 0,
+    clips: clips.map(title), intervals: clips.reduce((sum, clip) => sum + Math.max(1, clip.frames - 1), 0),
   });
   let done = 0, told = 0;
   for (const [number, clip] of clips.entries()) {

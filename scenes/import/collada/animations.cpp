@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <array>
 
 #include "core/base/error.h"
+#include "core/base/number_text.h"
 #include "scenes/import/collada/parts.h"
 
 namespace cscd::scenes::collada {
@@ -19,13 +19,15 @@ std::size_t counted(const std::map<std::string, std::size_t>& counts, const std:
   return found == counts.end() ? 0 : found->second;
 }
 
-// What assimp reads behind the name of a transform: all its numbers, one by its name, or one of a matrix.
-bool is_known_member(std::string_view member) {
-  constexpr std::array<std::string_view, 5> kNames = {"", ".X", ".Y", ".Z", ".ANGLE"};
-  if (std::ranges::find(kNames, member) != kNames.end()) return true;
+// How many numbers a key has for what stands behind the name of a transform and is read there: all its
+// numbers, one by its name, or one of a matrix. 0 for what is not read.
+std::size_t numbers_of_member(std::string_view transform, std::string_view member) {
+  if (member.empty()) return numbers_of_transform(transform);
+  if (member == ".ANGLE") return transform == "rotate";
+  if (member == ".X" || member == ".Y" || member == ".Z") return transform != "matrix";
   const auto digit = [&](std::size_t at) { return member[at] >= '0' && member[at] <= '3'; };
-  return member.size() == 6 && member[0] == '(' && digit(1) && member.substr(2, 2) == ")(" && digit(4) &&
-         member[5] == ')';
+  return transform == "matrix" && member.size() == 6 && member[0] == '(' && digit(1) &&
+         member.substr(2, 2) == ")(" && digit(4) && member[5] == ')';
 }
 
 std::string told_channel(pugi::xml_node channel) {
@@ -60,8 +62,8 @@ class Animations {
     for (const pugi::xml_node library : document_.root().children("library_animations"))
       walk(library, [&](pugi::xml_node element) {
         if (element.name() != std::string_view("channel")) return;
-        if (moves_node(element))
-          dense += check_channel(element);
+        if (const std::size_t numbers = numbers_moved(element); numbers > 0)
+          dense += check_channel(element, numbers);
         else
           others.push_back(element);
       });
@@ -107,9 +109,9 @@ class Animations {
     return named > 0 ? named : counted(by_sid_, joint);
   }
 
-  // Tells whether the channel moves a node of the scene. assimp drops all others without a word, so what
-  // they name has to exist and to have no bearing on positions, as a camera has none.
-  bool moves_node(pugi::xml_node channel) const {
+  // How many numbers of a node of the scene the channel moves. assimp drops channels that move none without
+  // a word, so what they name has to exist and to have no bearing on positions, as a camera has none.
+  std::size_t numbers_moved(pugi::xml_node channel) const {
     const std::string target = channel.attribute("target").value(), where = told_channel(channel);
     const std::size_t slash = target.find('/');
     const std::string id = target.substr(0, slash);
@@ -125,47 +127,54 @@ class Animations {
         if (above.name() == std::string_view("geometry") || above.name() == std::string_view("controller"))
           throw InputError(where + ": moves a " + above.name() +
                            " itself, which is not read; bake the animation on export");
-      return false;
+      return 0;
     }
     if (found->second.count > 1)
       throw InputError("animated node '" + id + "': several nodes have this id; rename all but one");
     const std::string_view moved = slash == target.npos ? "" : std::string_view(target).substr(slash + 1);
     const std::size_t member = std::min(moved.find_first_of(".("), moved.size());
     const std::string sid(moved.substr(0, member));
+    std::size_t numbers = 0;
     if (sid.empty() || sid.find('/') == sid.npos) {
-      const Moved what = sid.empty() ? Moved::nothing : moved_in(found->second.element, sid);
-      if (what == Moved::nothing)
+      const Moved what = sid.empty() ? Moved{} : moved_in(found->second.element, sid);
+      if (!what.is_there)
         throw InputError(where + ": node '" + id + "' has no transform with the sid '" + sid +
                          "'; repair it or export the file again");
-      if (what == Moved::other) return false;
+      if (what.transform.empty()) return 0;
+      numbers = numbers_of_member(what.transform, moved.substr(member));
     }
-    if (moved.find('/') != moved.npos || !is_known_member(moved.substr(member)))
+    if (numbers == 0)
       throw InputError(where +
                        ": moves a part of a transform that is not read; bake the animation on export");
     // assimp looks for members from the front of the whole target.
     if (id.find('(') != id.npos || std::ranges::count(target, '.') > 1)
       throw InputError(where + ": points and brackets in the id of the node hide what is moved; rename it");
-    return true;
+    return numbers;
   }
 
-  enum class Moved { nothing, transform, other };
+  // What a channel moves: a transform, by the name of its element, or something else that is there.
+  struct Moved {
+    bool is_there = false;
+    std::string transform = {};
+  };
 
   // What a node itself has under a scoped id: a transform, or something else, such as its visibility.
   static Moved moved_in(pugi::xml_node node, const std::string& sid) {
-    Moved what = Moved::nothing;
+    Moved what;
     for (const pugi::xml_node child : node.children()) {
       if (child.name() == std::string_view("node")) continue;
       if (child.attribute("sid").value() == sid && numbers_of_transform(child.name()) > 0)
-        return Moved::transform;
+        return {true, child.name()};
       bool has = child.attribute("sid").value() == sid;
       walk(child, [&](pugi::xml_node part) { has |= part.attribute("sid").value() == sid; });
-      if (has) what = Moved::other;
+      what.is_there = what.is_there || has;
     }
     return what;
   }
 
-  // Tells whether the channel of a node has dense keys that are joined by other than straight lines.
-  bool check_channel(pugi::xml_node channel) const {
+  // Tells whether the channel of a node, which moves so many numbers, has dense keys that are joined by other
+  // than straight lines.
+  bool check_channel(pugi::xml_node channel, std::size_t numbers) const {
     const std::string where = told_channel(channel);
     const pugi::xml_node sampler = document_.target_of(channel.attribute("source").value());
     if (sampler.parent() != channel.parent())
@@ -173,7 +182,7 @@ class Animations {
     const std::vector<std::string_view> kinds =
         words_of(document_.source_of(sampler, "INTERPOLATION").child("Name_array"));
     const bool straight = std::ranges::all_of(kinds, [](std::string_view kind) { return kind == "LINEAR"; });
-    const Keys keys = read_keys(sampler, !straight, where);
+    const Keys keys = read_keys(sampler, numbers, !straight, where);
     bool bent = false;
     for (std::size_t i = 0; i + 1 < keys.times.size() && i < kinds.size(); ++i) {
       if (kinds[i] == "LINEAR" || stands_still(kinds[i], i, keys)) continue;
@@ -185,7 +194,8 @@ class Animations {
     return bent;
   }
 
-  Keys read_keys(pugi::xml_node sampler, bool with_tangents, const std::string& where) const {
+  Keys read_keys(pugi::xml_node sampler, std::size_t numbers, bool with_tangents,
+                 const std::string& where) const {
     Keys keys;
     std::optional<Source> times, outputs;
     try {
@@ -199,6 +209,9 @@ class Animations {
         outputs->stride > kMostInKey)
       throw InputError(where +
                        ": its times and values are missing or do not fit each other; export it again");
+    if (outputs->stride != numbers)
+      throw InputError(where + ": has " + many(outputs->stride, "number") + " a key, and what it moves has " +
+                       std::to_string(numbers) + "; export it again");
     keys.times = std::move(times->numbers);
     keys.outputs = std::move(outputs->numbers);
     const auto falls = std::ranges::adjacent_find(keys.times, [](double a, double b) { return !(a < b); });
