@@ -37,7 +37,7 @@ void draw_exclusions(std::uint64_t seed, const SceneStep& step, Options& options
 
 // Mutations: contacts are not looked at while they are gathered; candidates are not.
 TEST(Thickness, SaysSoBeforePairsTakeMoreMemoryThanThereIs) {
-  if (!test::kMemoryCanBeLimited) GTEST_SKIP() << "memory cannot be limited here";
+  if (!test::memory_can_be_limited()) GTEST_SKIP() << "memory cannot be limited here";
   constexpr int kSide = 20;
   constexpr double kFar = 4.5;  // edges
   FaceRows faces(4 * kSide * kSide, 3);

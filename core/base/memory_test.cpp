@@ -13,7 +13,7 @@ namespace {
 
 // Mutation: the limit on the address space is not looked at.
 TEST(Memory, IsWhatTheLimitOnTheAddressSpaceLeaves) {
-  if (!test::kMemoryCanBeLimited) GTEST_SKIP() << "a sanitizer takes all address space";
+  if (!test::memory_can_be_limited()) GTEST_SKIP() << "memory cannot be limited here";
   EXPECT_GT(available_memory(), std::uint64_t{1} << 20);
   const test::MemoryLimit limit(64 << 20);
   EXPECT_LE(available_memory(), std::uint64_t{64} << 20);
@@ -22,7 +22,7 @@ TEST(Memory, IsWhatTheLimitOnTheAddressSpaceLeaves) {
 
 // Mutations: a watch never looks, or forgets to look again once it has.
 TEST(Memory, IsLookedAtAsPairsGrow) {
-  if (!test::kMemoryCanBeLimited) GTEST_SKIP() << "a sanitizer takes all address space";
+  if (!test::memory_can_be_limited()) GTEST_SKIP() << "memory cannot be limited here";
   constexpr std::size_t kBytes = 8 * 48;
   const test::MemoryLimit limit(64 << 20);
   MemoryWatch watch;
@@ -42,7 +42,7 @@ TEST(Memory, IsLookedAtAsPairsGrow) {
 
 // Mutation: what a list takes while it grows is left out.
 TEST(Memory, IsEnoughForAListToGrow) {
-  if (!test::kMemoryCanBeLimited) GTEST_SKIP() << "a sanitizer takes all address space";
+  if (!test::memory_can_be_limited()) GTEST_SKIP() << "memory cannot be limited here";
   const test::MemoryLimit limit(64 << 20);
   std::vector<std::array<char, 64>> list;
   MemoryWatch watch;

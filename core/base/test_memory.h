@@ -9,13 +9,6 @@
 
 namespace cscd::test {
 
-// Sanitizers take address space without end, and Windows limits none.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(_WIN32)
-inline constexpr bool kMemoryCanBeLimited = false;
-#else
-inline constexpr bool kMemoryCanBeLimited = true;
-#endif
-
 // Leaves this process so many bytes more of address space than it has now, for as long as the object lives.
 class MemoryLimit {
  public:
@@ -40,5 +33,17 @@ class MemoryLimit {
   rlimit before_{};
 #endif
 };
+
+// Sanitizers take address space without end, Windows limits none, and emulators may not hand the limit on.
+inline bool memory_can_be_limited() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(_WIN32)
+  return false;
+#else
+  const MemoryLimit limit(std::size_t{1} << 30);
+  rlimit now{};
+  getrlimit(RLIMIT_AS, &now);
+  return now.rlim_cur != RLIM_INFINITY;
+#endif
+}
 
 }  // namespace cscd::test
