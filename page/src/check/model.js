@@ -30,7 +30,7 @@ async function reading(read, said = []) {
     return await read();
   } catch (error) {
     const said = error instanceof TypeError || error instanceof RangeError ? "a value in it is none that three.js expects" : error.message.replace(/^THREE\.\w+: /, "").replace(/\.$/, "");
-    throw new Error(`cannot be read (${said}); export it again, or ask cscd query`);
+    throw new Error(`cannot be read (${said}); export it again, or try the program: cscd query`);
   } finally {
     console.warn = warn;
   }
@@ -74,7 +74,7 @@ async function readGltf(bytes, files) {
   const { json, body } = await reading(() => partsOfGltf(bytes));
   const known = (extension) => READ.includes(extension) || HARMLESS.test(extension);
   const unknown = (json.extensionsRequired ?? []).find((extension) => !known(extension));
-  if (unknown) throw new Error(`needs the glTF extension ${unknown}, which this page does not read${unknown.includes("draco") ? `; ${ASK}` : "; export it without"}`);
+  if (unknown) throw new Error(`needs the glTF extension ${unknown}, which this page does not read${unknown.includes("draco") ? `; ${ASK}` : "; switch it off in the exporter"}`);
   const notes = (json.extensionsUsed ?? []).filter((extension) => !known(extension)).map((extension) => `the optional glTF extension '${extension}' is not read`);
   for (const key of ["materials", "textures", "images", "samplers"]) delete json[key];
   for (const { primitives } of json.meshes ?? [])
