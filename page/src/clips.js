@@ -33,7 +33,7 @@ export function offerClips(header) {
 
 // The deepest first, then what crosses or touches, then the others, each in the order of the file.
 export function listClips(header, clips, shown) {
-  const list = byId("clips"), rank = (clip) => (isBad(summaryOf(clip)) ? (isMild(summaryOf(clip)) ? 1 : 2) : isOpen(summaryOf(clip)) ? 1 : 0);
+  const list = byId("clips"), rankOf = (summary) => (isMild(summary) || isOpen(summary) ? 1 : isBad(summary) ? 2 : 0), rank = (clip) => rankOf(summaryOf(clip));
   const sorted = clips.map((clip, i) => ({ clip, i })).sort((a, b) => depthIn(b.clip) - depthIn(a.clip) || rank(b.clip) - rank(a.clip) || a.i - b.i);
   list.replaceChildren(...sorted.map(({ clip, i }) => {
     const { headline } = summaryOf(clip), deep = headline ? `, ${lengthText({ header }, headline.depth.at_least)} deep` : "";

@@ -31,8 +31,9 @@ export function modesOf({ strategies, clip, place, part, events }) {
 }
 
 // The depth that the verdict names, or else that of the deepest vertex of the clip in another piece of the surface.
-export function mostDepth({ strategies: [{ summary: { headline } }], insideDepth }) {
-  return headline?.depth.at_least || insideDepth.reduce((a, b) => Math.max(a, b), 0);
+export function mostDepth(recording) {
+  recording.mostDepth ??= recording.strategies[0].summary.headline?.depth.at_least || recording.insideDepth.reduce((a, b) => Math.max(a, b), 0);
+  return recording.mostDepth;
 }
 
 // The numbers of the two places of a chosen event, what lies in the other first; empty where there is one place, or no event.

@@ -14,7 +14,7 @@ export const contactVerb = (strategy, contact) => {
 // tell whether it touches.
 export const isBad = ({ true_motion: own, ...lines }) => (own ? own.touches + own.intersects_at_start : lines.touches + lines.intersects_at_start + (lines.close || 0)) > 0;
 export const isOpen = ({ true_motion: own, undecided }) => (own ? own.undecided + own.close : undecided) > 0;
-// What only touches, or folds at joints, is milder than what lies in something.
+// A surface that only touches itself is milder than one that crosses itself.
 export const isMild = (summary) => isBad(summary) && !summary.true_motion && !summary.headline && !summary.intersects_at_start;
 export const markOf = (summary) => (isMild(summary) ? "\u25cf" : isBad(summary) ? "\u2716" : isOpen(summary) ? "?" : "\u2714");
 

@@ -258,8 +258,8 @@ ImportReport import_sequence(const std::filesystem::path& model, const ImportOpt
   PointCacheWriter writer(cache, {surface.faces.triangles, vertices, {}, false}, false);
   std::vector<Vec3> positions;
   for (std::size_t frame = 0; frame < (options.survey ? 2 : std::max<std::size_t>(2, frames)); ++frame) {
-    sequence->read_frame(std::min(frame, frames - 1),
-                         positions);  // a cache has two frames, those of one pose too
+    // A cache of one pose has two frames, too.
+    sequence->read_frame(std::min(frame, frames - 1), positions);
     writer.append({positions, {}});
   }
   writer.finish();

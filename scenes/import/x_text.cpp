@@ -167,6 +167,11 @@ class XText {
       mesh_ = MeshNumbers("");
   }
 
+  // The line of the next word, to begin a refusal with.
+  std::string line() const {
+    return "line " + std::to_string(1 + std::ranges::count(text_.substr(0, at_), '\n'));
+  }
+
   void go_behind(std::string_view end, std::size_t from) {
     at_ = std::min(text_.find(end, from), text_.size() - 1) + 1;
   }
@@ -179,12 +184,10 @@ class XText {
     const bool is_name = next < text_.size() && (text_[next] == '{' || (text_[next] == '}' && before == '{'));
     const std::optional<double> number = number_of(word);
     if (!is_name && (number ? !std::isfinite(*number) : begins_like_number(word)))
-      throw InputError("line " + std::to_string(1 + std::ranges::count(text_.substr(0, at_), '\n')) + ": '" +
-                       std::string(word.substr(0, 40)) +
+      throw InputError(line() + ": '" + std::string(word.substr(0, 40)) +
                        "' stands where a number has to be; export the file again");
     if (number && keys_.take(word, text_.substr(behind_, at_ - behind_)))
-      throw InputError("line " + std::to_string(1 + std::ranges::count(text_.substr(0, at_), '\n')) +
-                       ": an animation key has more values than it counts; export the file again");
+      throw InputError(line() + ": an animation key has more values than it counts; export the file again");
     at_ = behind_ = end;
     mesh_.take(word);
     last_but_one_ = last_;

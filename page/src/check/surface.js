@@ -134,7 +134,7 @@ export class Surface {
       this.part[t] = numberOf(this.partName(t));
       this.place[t] = bone < 0 ? this.part[t] : numberOf(this.nameOfBone(bone));
     }
-    const hasPoints = Array.from({ length: mesh.vertices }, (_, v) => v).some((v) => mesh.around(v).length === 0);
+    const hasPoints = this.rawVertex.some((_, v) => mesh.around(v).length === 0);
     const point = hasPoints ? numberOf(POINT) : 0;
     if (texts.length > 65536) throw new Error("has more than 65536 names of bones and parts; ask cscd query");
     this.texts = texts;
