@@ -11,12 +11,6 @@
 namespace cscd {
 namespace {
 
-constexpr std::int32_t kNone = -1;
-
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
-
 // A forest that spans the mesh, of each component breadth first.
 std::vector<CurveMarks::Branch> forest_of(const TriangleMesh& mesh) {
   std::vector<CurveMarks::Branch> forest;

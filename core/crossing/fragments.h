@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/ids.h"
+#include "core/base/numbers.h"
 #include "core/base/vec3.h"
 #include "core/crossing/curves.h"
 #include "core/mesh/triangle_mesh.h"
@@ -20,13 +21,13 @@ struct CurveMarks {
   // Makes room for marks. A mesh that never crosses itself needs none.
   void prepare(const TriangleMesh& mesh);
   std::span<const TriangleId> triangles_of(std::int32_t component) const {
-    const auto c = static_cast<std::size_t>(component);
+    const std::size_t c = index(component);
     return std::span(by_component)
         .subspan(first_of_component[c], first_of_component[c + 1] - first_of_component[c]);
   }
 
   std::vector<bool> is_open;              // [components], whether it has an edge without two proper sides
-  std::vector<std::int32_t> pierced;      // [edges], the first piercing, or -1
+  std::vector<std::int32_t> pierced;      // [edges], the first piercing, or kNone
   std::vector<std::uint8_t> is_on_curve;  // [vertices], whether a curve ends there
   std::vector<std::uint8_t> is_cut;       // [triangles], whether a curve runs through
 
@@ -95,7 +96,7 @@ class Fragments {
 
  private:
   std::int32_t component(EdgeId edge) const { return mesh_.component(mesh_.triangles_at(edge).front()); }
-  std::int32_t fragment(VertexId v) const { return fragment_[static_cast<std::size_t>(marks_.branch[+v])]; }
+  std::int32_t fragment(VertexId v) const { return fragment_[index(marks_.branch[+v])]; }
   // The fragments of one tree of the forest, joined to the parts of a group.
   struct Parts {
     std::int32_t first;                // fragment

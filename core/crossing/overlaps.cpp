@@ -20,14 +20,9 @@
 namespace cscd {
 namespace {
 
-constexpr std::int32_t kNone = -1;
 // The largest coordinates of poses that are measured as they are: products of four lengths of a pose, or of
 // its smallest triangles, neither overflow nor vanish.
 constexpr double kSmallestPose = 0x1p-60, kLargestPose = 0x1p60;
-
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 void scale_back(CrossingDepth& depth, double scale) {
   const double upper = depth.upper;

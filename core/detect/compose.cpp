@@ -466,6 +466,7 @@ class ComposedDetector : public Detector {
   }
   void forget() override { culler_->forget(), tester_.forget(); }
   std::vector<std::byte> saved_preparation() const override { return culler_->saved_preparation(); }
+  const fast::PatchTree* patches() const override { return culler_->patches(); }
   RadialView radial_view() const override { return culler_->radial_view(); }
 
  private:

@@ -12,6 +12,10 @@
 
 namespace cscd {
 
+namespace fast {
+struct PatchTree;  // core/fast/prepare/patches.h
+}
+
 // Two different triangles that may touch in the interval.
 struct TrianglePair {
   TriangleId a, b;
@@ -101,6 +105,8 @@ class Culler {
   virtual void forget() {}
   // Returns what preparation has found out (Detector::saved_preparation).
   virtual std::vector<std::byte> saved_preparation() const { return {}; }
+  // How preparation has cut the surface into patches (Detector::patches).
+  virtual const fast::PatchTree* patches() const { return nullptr; }
   // The orientation of the surface in the last interval, for pictures.
   virtual RadialView radial_view() const { return {}; }
 };

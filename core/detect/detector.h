@@ -29,6 +29,9 @@ struct Report {
 };
 
 class TrianglePairSink;
+namespace fast {
+struct PatchTree;  // core/fast/prepare/patches.h
+}
 
 // Finds the contacts of one interval after another. The kind of a detector's strategy (StrategyKind) says
 // whether the detector allocates memory once it has seen its largest interval. A package may, and so may a
@@ -50,6 +53,8 @@ class Detector {
   // Returns what preparation has found out about the surface, for StrategyInput::preparation of another
   // detector. Empty for strategies whose preparation takes no time worth saving.
   virtual std::vector<std::byte> saved_preparation() const { return {}; }
+  // How preparation has cut the surface into patches; null for strategies that know none.
+  virtual const fast::PatchTree* patches() const { return nullptr; }
   virtual RadialView radial_view() const { return {}; }
 };
 

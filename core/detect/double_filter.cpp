@@ -77,7 +77,7 @@ constexpr auto kLowFirst = [](const auto& edges) { return picked<3, 3, 3, 0, 0, 
 constexpr auto kLowSecond = [](const auto& edges) { return picked<5, 5, 5, 2, 2, 2, 3, 4>(edges); };
 constexpr auto kHighFirst = [](const auto& edges) { return picked<0, 1, 1, 1, 2, 2, 2, 2>(edges); };
 constexpr auto kHighSecond = [](const auto& edges) { return picked<5, 3, 4, 5, 3, 4, 5, 5>(edges); };
-constexpr Sign8 kVertexFace = {-1, -1, -1, -1, -1, -1, 0, 0};  // at places 0 to 7
+constexpr Sign8 kLowVertexFace = {-1, -1, -1, -1, -1, -1, 0, 0};
 
 Points low_points(const Features& f) {
   return {{picked<3, 3, 3, 0, 0, 0, 8 + 0, 8 + 0>(f.corner, f.first_end),
@@ -123,8 +123,8 @@ CarriedPlaces not_filtered(const Motion& motion, const Triangle& a, const Triang
       never_coplanar(f, kHighFirst, kHighSecond, kHighSecond(f.first_end) - kHighFirst(f.first_end));
   unsigned left = places & ~(low | high << 8);
   if ((left & 0xff) != 0) {
-    const Sign8 exchanged = (kLowFirst(f.first) > kLowSecond(f.first)) & ~kVertexFace;
-    left &= ~apart_in_plane(low_points(f), exchanged, kVertexFace);
+    const Sign8 exchanged = (kLowFirst(f.first) > kLowSecond(f.first)) & ~kLowVertexFace;
+    left &= ~apart_in_plane(low_points(f), exchanged, kLowVertexFace);
   }
   if (left >> 8 != 0) {
     const Sign8 exchanged = kHighFirst(f.first) > kHighSecond(f.first);

@@ -65,6 +65,7 @@ class FastCuller : public Culler {
     if (following_ && !following_->whole()) return {};
     return saved_cut(mesh_, reference_, cut_, covers_used_);
   }
+  const PatchTree* patches() const override { return &cut_.tree; }
   // Of a step in parts, the view is that of the last part.
   RadialView radial_view() const override { return certificates_.view(); }
 

@@ -5,8 +5,6 @@
 namespace cscd {
 namespace {
 
-// The most crossing pairs that are kept of one pose, eight bytes each. A surface with more has collapsed.
-constexpr std::size_t kMostCrossings = std::size_t{1} << 22;
 // From more contacts than this it is quicker to look at the whole surface again.
 constexpr std::size_t kMostFollowed = 20'000;
 

@@ -28,9 +28,7 @@ constexpr double kLeastRoom = 0.0625;
 constexpr std::size_t kTrianglesForOne = 8, kLeastMany = 1024;
 constexpr double kFew = 0.5, kFarther = 2;
 // The work of a strategy is counted in pairs of triangles: those that it tests, one for so many overlap
-// tests, and one for so many triangles that it looks at. To cut the surface into patches takes about as long
-// as a few times as many pairs as there are triangles. That waits until lists have spared as many as there
-// are.
+// tests, and one for so many triangles that it looks at.
 constexpr std::size_t kOverlapTests = 32, kLookedAt = 16;
 // Pairs are looked at because patches have bent until that takes this share of what an anchor takes.
 constexpr double kBent = 0.5;
@@ -191,14 +189,13 @@ bool NearPairs::covers(const Motion& motion, const Complete& complete) {
   if (!is_within_reach(motion)) {
     if (!is_worth_listing(motion)) return false;
     const double room = std::clamp(2 * kSteps * length_, kLeastRoom * most_room_, kOfLists * most_room_);
-    if (!list(motion.end(), room)) {
+    if (!list(motion.end(), room, complete)) {
       Detector* const detector = complete();
       if (detector == nullptr || !anchor(motion.end(), *detector)) return false;
     }
     if (!is_within_reach(motion)) return forget_anchor(), false;
   }
   ++served_;
-  spared_ += work_;
   return true;
 }
 
@@ -241,13 +238,21 @@ void NearPairs::use_list(double reach) {
   ++lists_;
 }
 
-// Lists what comes within the thickness and some room in a pose, from the anchor.
-bool NearPairs::list(std::span<const Vec3> pose, double room) {
-  if (is_anchor_) {
-    is_anchor_ = false;
-    if (!motions_ && spared_ >= mesh_.triangle_count()) motions_.emplace(mesh_, reference_);
-    if (motions_) motions_->set_anchor(pose_, reach_, near_);
+// The list of an anchor becomes what further lists are made from, by the patches of the strategy, if it knows
+// any.
+void NearPairs::take_anchor(const Complete& complete) {
+  is_anchor_ = false;
+  if (!motions_) {
+    const Detector* const detector = complete();
+    if (detector != nullptr && detector->patches() != nullptr)
+      motions_.emplace(reference_, *detector->patches());
   }
+  if (motions_) motions_->set_anchor(pose_, reach_, near_);
+}
+
+// Lists what comes within the thickness and some room in a pose, from the anchor.
+bool NearPairs::list(std::span<const Vec3> pose, double room, const Complete& complete) {
+  if (is_anchor_) take_anchor(complete);
   if (!motions_ || !motions_->has_anchor()) return false;
   reach_ = 0, near_.clear();
   pose_.assign(pose.begin(), pose.end());

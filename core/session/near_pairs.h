@@ -58,7 +58,8 @@ class NearPairs {
   bool anchor(std::span<const Vec3> pose, Detector& detector);
   void forget_anchor();
   void use_list(double reach);
-  bool list(std::span<const Vec3> pose, double room);
+  bool list(std::span<const Vec3> pose, double room, const Complete& complete);
+  void take_anchor(const Complete& complete);
 
   const TriangleMesh& mesh_;
   std::span<const Vec3> reference_;
@@ -76,7 +77,6 @@ class NearPairs {
 
   double most_room_;        // how far beyond the thickness the next anchor may reach
   std::size_t work_ = 0;    // of a strategy in the last step that it answered; 0 before the first
-  std::size_t spared_ = 0;  // work, by all lists
   std::size_t served_ = 0;  // steps that were covered since the last anchor
   // Pairs that were looked at for the last anchor, and since then because patches have bent.
   std::size_t looked_at_ = 0, bent_ = 0;

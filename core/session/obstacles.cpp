@@ -9,8 +9,6 @@
 namespace cscd {
 namespace {
 
-constexpr std::size_t kMostCrossings = std::size_t{1} << 22;
-
 TriangleMesh joined(const TriangleMesh& own, const TriangleMesh& beside) {
   std::vector<Triangle> triangles(own.triangles().begin(), own.triangles().end());
   const auto behind = [&](VertexId v) {

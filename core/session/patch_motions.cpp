@@ -1,6 +1,7 @@
 #include "core/session/patch_motions.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace cscd {
@@ -100,17 +101,18 @@ void at_corner(const Vectors16& of_vertices, const Patch& patch, std::size_t cor
 
 }  // namespace
 
-PatchMotions::PatchMotions(const TriangleMesh& mesh, std::span<const Vec3> reference)
-    : place_(mesh.triangle_count()), positions_(reference) {
-  const std::vector<std::int32_t> one_cluster(mesh.triangle_count(), 0);
-  tree_ = fast::make_tree(
-      mesh, reference, fast::cut_into_patches(mesh, reference, {one_cluster, one_cluster}, 1), one_cluster);
-  tree_.common = {}, tree_.adjacent = {};
+PatchMotions::PatchMotions(std::span<const Vec3> reference, const fast::PatchTree& patches)
+    : positions_(reference) {
+  tree_.nodes = patches.nodes, tree_.leaf = patches.leaf;
+  tree_.patches = patches.patches, tree_.triangles = patches.triangles;
   const std::size_t count = tree_.patches.size();
   vertex_.resize((count + kGroup - 1) / kGroup);
   for (std::size_t p = 0; p < vertex_.size() * kGroup; ++p)
     for (std::size_t k = 0; k < kLanes16; ++k)
       vertex_[p / kGroup][k][p % kGroup] = tree_.patches[std::min(p, count - 1)].vertex[k];
+  std::size_t triangles = 0;
+  for (const Patch& patch : tree_.patches) triangles += static_cast<std::size_t>(std::popcount(patch.lanes));
+  place_.resize(triangles);
   for (std::size_t p = 0; p < count; ++p)
     for_each_lane(tree_.patches[p].lanes, [&](std::size_t lane) {
       place_[+tree_.triangles[p][lane]] = static_cast<std::int32_t>(p * kLanes16 + lane);

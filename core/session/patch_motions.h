@@ -26,8 +26,8 @@ namespace cscd {
 // vertex, and 16 for each pair that is listed in the anchor.
 class PatchMotions {
  public:
-  // `reference`, [vertices], is the pose in which the surface is cut into patches.
-  PatchMotions(const TriangleMesh& mesh, std::span<const Vec3> reference);
+  // `reference`, [vertices], is the pose at rest, in which the surface has been cut into `patches`.
+  PatchMotions(std::span<const Vec3> reference, const fast::PatchTree& patches);
 
   // Makes a pose the anchor. `near` holds all pairs that are within `reach`, which is above 0, of each other
   // in it.

@@ -22,6 +22,12 @@ class Kept : public TrianglePairSink {
   }
 };
 
+fast::PatchTree cut(const TriangleMesh& mesh, const std::vector<Vec3>& pose) {
+  const std::vector<std::int32_t> one_cluster(mesh.triangle_count(), 0);
+  return fast::make_tree(mesh, pose, fast::cut_into_patches(mesh, pose, {one_cluster, one_cluster}, 1),
+                         one_cluster);
+}
+
 // All pairs within a reach, from all there are.
 std::vector<NearPair> all_near(const TriangleMesh& mesh, const std::vector<Vec3>& pose, double reach) {
   std::vector<NearPair> out;
@@ -48,7 +54,7 @@ class PatchMotionsTest : public testing::Test {
             test::together(test::sheet(kCells), test::moved(test::sheet(kCells), {0.01, 0.02, kGap})),
             test::moved(test::icosphere(2), {0.2, 0.1, 2 * kGap + 0.5}, 0.5))),
         mesh_(shape_.mesh()),
-        motions_(mesh_, shape_.positions) {}
+        motions_(shape_.positions, cut(mesh_, shape_.positions)) {}
 
   double draw() { return some_(random_); }
   Vec3 draw_point() { return {draw(), draw(), draw()}; }
@@ -159,7 +165,7 @@ TEST(PatchMotions, SeesAPatchCrumple) {
   constexpr int kCells = 16;
   const test::Shape shape = test::sheet(kCells);
   const TriangleMesh mesh = shape.mesh();
-  PatchMotions motions(mesh, shape.positions);
+  PatchMotions motions(shape.positions, cut(mesh, shape.positions));
   const double far = 0.68 * 2 / kCells, reach = 0.38 * 2 / kCells;
   std::vector<NearPair> known = all_near(mesh, shape.positions, far);
   ASSERT_TRUE(known.empty());

@@ -8,8 +8,6 @@
 namespace cscd {
 namespace {
 
-constexpr std::size_t kMostPairs = std::size_t{1} << 22;  // a surface with more has collapsed
-
 SelfCollision::Crossings::Curve written(const CrossingCurves& all, const CrossingCurve& curve,
                                         std::span<const Vec3> positions) {
   SelfCollision::Crossings::Curve out;
@@ -51,10 +49,10 @@ bool CrossingSearch::excludes(const Exclusions& excluded, const CrossingCurves& 
 }
 
 Overlaps CrossingSearch::overlaps(std::span<const Vec3> positions, bool each_way) {
-  const Crossings pairs = pairs_.find_all(positions, kMostPairs);
+  const Crossings pairs = pairs_.find_all(positions, kMostCrossings);
   if (!pairs.all_kept())
     throw InputError("crossings: " + std::to_string(pairs.total) + " pairs of faces cross, more than " +
-                     std::to_string(kMostPairs) + "; the surface has collapsed");
+                     std::to_string(kMostCrossings) + "; the surface has collapsed");
   return finder_.find(positions, pairs.pairs, each_way);
 }
 

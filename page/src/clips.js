@@ -42,5 +42,7 @@ export function listClips(header, clips, shown) {
     return option;
   }));
   list.value = String(shown);
+  const unclear = clips.filter((clip) => rank(clip) > 0).length;
+  byId("clips-label").firstChild.textContent = `${unclear} of ${clips.length} clips are not clear: `;
   byId("clips-label").hidden = false;
 }

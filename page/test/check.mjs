@@ -199,8 +199,10 @@ try {
       return boxes.map((box) => active.folds.has(keys.find((key) => list.groups.get(key).details === box)));
     });
     require(order.lastIndexOf(false) < order.indexOf(true) || !order.includes(true), `folds at joints are not listed last: ${order}`);
+    await page.emulateMedia({ reducedMotion: null });  // this one flies
     await row.click();
     await settle();
+    await page.emulateMedia({ reducedMotion: "reduce" });
     const arrived = await page.evaluate(() => {
       const { stage, chosen } = window.cscd, point = window.cscd.pointOf(chosen);
       return { moved: stage.camera.position.toArray(), off: stage.controls.target.distanceTo(point), radius: stage.whole.radius, interval: window.cscd.interval() };

@@ -134,11 +134,11 @@ class SceneFiles : public testing::TestWithParam<Asked> {
  protected:
   static bool responds() { return cscd::scenes::responds(GetParam()); }
   void SetUp() override {
-    // What takes longest to make and is made by the same code as hand_contact, box_contact, urchin_contact,
-    // fold and bag_contact.
+    // What takes longest to make and is made by the same code as hand_contact, urchin_contact and
+    // bag_contact.
     constexpr std::string_view kForFull[] = {
-        "rope_contact", "octopus_contact", "man_contact",  "sheet",        "bag",
-        "skirt",        "sheet_contact",   "fold_contact", "skirt_contact"};
+        "rope_contact", "octopus_contact", "man_contact",   "box_contact",  "sheet",        "fold",
+        "bag",          "skirt",           "sheet_contact", "fold_contact", "skirt_contact"};
     if (!std::getenv("CSCD_FULL") && std::ranges::find(kForFull, GetParam().name) != std::end(kForFull))
       GTEST_SKIP() << "takes up to a minute to make; CSCD_FULL=1 asks for it";
     if (stride() > 4 && responds() && GetParam().triangles > 12'000)

@@ -35,7 +35,9 @@ function(cscd_compile_together target)
   endif()
 endfunction()
 
-# Rooms whose time is recorded: each file is compiled alone, so that no other file changes what the compiler makes of it.
+# Rooms whose time is recorded: each file is compiled alone, so that no other file changes what the compiler makes of it. The build for
+# the tests (test.cmake) times nothing.
+option(CSCD_UNITY_OF_ALL "Compile several files at once of rooms whose time is recorded, too" OFF)
 set(CSCD_ROOMS_FILE_BY_FILE "^(core|library|baselines)(/|$)|^bench/measure/(strategies|kernels)$")
 # Rooms that run once for each command or file. Optimising these takes longer than it saves.
 set(CSCD_BRIEF_ROOMS "^bench/(tables|compare|benchmark|statistics|records|inputs|command_line)(/|$)|^bench/(cli|query|measure)$|^bench/(cli/interface|query/view|measure/studies|measure/shards)$|^scenes/(import|export|exchange|catalog)(/|$)")
@@ -78,7 +80,7 @@ function(cscd_room path)
     target_include_directories(${room} PUBLIC ${PROJECT_SOURCE_DIR})
     target_link_libraries(${room} PUBLIC ${below} ${ROOM_LINK} PRIVATE cscd_flags)
     set(level full)
-    if(NOT path MATCHES "${CSCD_ROOMS_FILE_BY_FILE}")
+    if(CSCD_UNITY_OF_ALL OR NOT path MATCHES "${CSCD_ROOMS_FILE_BY_FILE}")
       cscd_compile_together(${room})
     endif()
     if(path MATCHES "${CSCD_BRIEF_ROOMS}")

@@ -3,8 +3,6 @@
 #   cscd_wasm_package(FOLDER ROOM)
 function(cscd_wasm_package path room)
   cscd_rooms_below(rooms "^(core|library)(_|$)" ${room})
-  # In these, files have helpers of the same name; in the others, several files are compiled at once (wasm.cmake).
-  set_target_properties(core_detect core_crossing core_session PROPERTIES UNITY_BUILD OFF)
   cscd_room_objects(objects ${rooms})
   # What runs once a mesh, or decides the few pairs that no filter decides: the package is to be small.
   foreach(room core_mesh core_elementary core_elementary_exact core_detect_start core_crossing core_radial core_fast_clusters core_fast_prepare
@@ -24,7 +22,7 @@ function(cscd_wasm_package path room)
   set(package ${PROJECT_BINARY_DIR}/js)
   add_executable(cscd_wasm ${folder}/bindings.cpp ${folder}/runtime.cpp ${objects})
   target_compile_options(cscd_wasm PRIVATE -Oz)
-  set_target_properties(cscd_wasm PROPERTIES UNITY_BUILD OFF OUTPUT_NAME cscd SUFFIX .wasm RUNTIME_OUTPUT_DIRECTORY ${package})
+  set_target_properties(cscd_wasm PROPERTIES OUTPUT_NAME cscd SUFFIX .wasm RUNTIME_OUTPUT_DIRECTORY ${package})
   target_link_libraries(cscd_wasm PRIVATE ${room} cscd_flags)
   # A library without main(). Its stack lies below its data, so that an overflow traps.
   target_link_options(cscd_wasm PRIVATE -mexec-model=reactor -Wl,--stack-first -Wl,-z,stack-size=1048576 -Wl,--strip-all)

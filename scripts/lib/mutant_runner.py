@@ -14,7 +14,8 @@ from mutations import mutated
 from rooms import above, closure, read_rooms, test_programs
 from script import ROOT, refuse
 
-FUZZ = {"fuzz_engine_replay": 150, "fuzz_elementary_replay": 1000, "fuzz_queries_replay": 1000}  # inputs of each
+FUZZ = {"fuzz_engine_replay": 150, "fuzz_elementary_replay": 1000, "fuzz_queries_replay": 1000, "fuzz_gltf_replay": 1000,
+        "fuzz_fbx_replay": 1000}  # inputs of each
 FLAGS = ["-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_COMPILER=g++", "-DCMAKE_C_COMPILER=gcc", "-DCSCD_NATIVE=ON",
          "-DCSCD_VIEWER=OFF", "-DCMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE=PRE_TEST",
          # A mutant may leave a variable unused, and an index outside of its array has to show.
@@ -189,7 +190,7 @@ class Runner:
     def targets(self, file):
         """Test programs for a file: of its room first, then of rooms above it, bottom-up."""
         own = file.rpartition("/")[0]
-        return test_programs([own, *above(self.rooms, own)])
+        return test_programs([own], "") + test_programs(above(self.rooms, own))
 
     def filters(self, target):
         quick = [name for name, seconds in self.times[target].items()
@@ -244,7 +245,7 @@ class Runner:
                   if programs and stage in self.options.stages and stage not in seen]
         for stage, programs in wanted:
             copy.prepare(programs)
-            self.measure_all(copy, [name for name in programs if name.startswith(("core_", "library_"))])
+            self.measure_all(copy, [name for name in programs if name.endswith("_test") and name != "bench_harness_test"])
         library = "lib" + mutation.file.rpartition("/")[0].replace("/", "_") + ".a"
         copy.prepare([library] if mutation.file.endswith(".cpp") else self.targets(mutation.file)[:1])
         mutate()

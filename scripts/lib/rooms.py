@@ -22,10 +22,9 @@ def read_rooms(cmake_lists):
     return rooms
 
 
-def test_programs(rooms):
-    """The test programs of those rooms of core and of the library that have tests."""
-    return [room.replace("/", "_") + "_test" for room in rooms
-            if re.match(r"core/|library$|scenes/queries$", room) and list((ROOT / room).glob("*_test.cpp"))]
+def test_programs(rooms, of="core/|library$|scenes/queries$"):
+    """The test programs of those rooms, by default of core and of the library, that have tests."""
+    return [room.replace("/", "_") + "_test" for room in rooms if re.match(of, room) and list((ROOT / room).glob("*_test.cpp"))]
 
 
 def closure(rooms, start):

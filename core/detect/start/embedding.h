@@ -12,6 +12,9 @@
 
 namespace cscd {
 
+// The most crossing pairs that are kept of one pose, eight bytes each. A surface with more has collapsed.
+constexpr std::size_t kMostCrossings = std::size_t{1} << 22;
+
 // Decides exactly whether a pose is *embedded*: no two triangles meet outside the vertices and edges that
 // they share. In an embedded pose no feature pair touches and no edge pierces a face. The theorem behind the
 // guarantee `first_contact` needs an embedded start (rule embedded-start, core/soundness.md).

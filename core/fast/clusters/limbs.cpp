@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/fast/clusters/numbers.h"
+#include "core/base/numbers.h"
 #include "core/mesh/adjacency.h"
 
 namespace cscd::fast {

@@ -7,9 +7,9 @@
 #include <numeric>
 #include <set>
 
+#include "core/base/numbers.h"
 #include "core/fast/clusters/best_viewpoint.h"
 #include "core/fast/clusters/limbs.h"
-#include "core/fast/clusters/numbers.h"
 #include "core/fast/clusters/seams.h"
 
 namespace cscd::fast {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/base/numbers.h"
 #include "core/base/thread_pool.h"
-#include "core/fast/clusters/numbers.h"
 #include "core/fast/prepare/following_point.h"
 #include "core/mesh/triangle_mesh.h"
 

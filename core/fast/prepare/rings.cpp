@@ -1,6 +1,6 @@
 #include "core/fast/prepare/rings.h"
 
-#include "core/fast/clusters/numbers.h"
+#include "core/base/numbers.h"
 #include "core/mesh/adjacency.h"
 
 namespace cscd::fast {

@@ -2,7 +2,7 @@
 
   scripts/find-faults mutants                           300 mutants, drawn at random from all places; goes on where it was stopped
   scripts/find-faults mutants --resume --stages own,rooms,proof,slow    asks those that are still alive by the other tests, too
-  scripts/find-faults mutants --only core/fast/certify/one_rings.cpp --count 40
+  scripts/find-faults mutants --only core/session --count 40       of a file or a folder
   scripts/find-faults mutants --list --count 0          the places, without a run
   scripts/find-faults mutants --record                  writes results/trust/DATE-mutants.json from the file of results
   scripts/find-faults mutants --from results/trust/2026-11-26-mutants-2.json --stages room,own,rooms
@@ -10,7 +10,7 @@
                                            them; with --record, writes DATE-mutants-asked-again.json
 
 A mutant flips a comparison, drops an error term or its factor, shifts an index, exchanges an operator or removes a statement
-in core/geometry, core/elementary or core/fast (scripts/lib/mutations.py). It is built and tested in a copy of the working
+in core/ or in scenes/import, the readers of models (scripts/lib/mutations.py). It is built and tested in a copy of the working
 tree below build-mutate, so no file of the working tree ever holds a mutant. The tests come in stages, and the first
 test that fails ends the mutant:
 
@@ -52,7 +52,7 @@ from script import ROOT, parser_of, refuse
 from tracked import tracked_files
 from trust import moved, reason_for, reasons_of, write_record
 
-FOLDERS = ("core/geometry", "core/elementary", "core/fast")
+FOLDERS = ("core", "scenes/import")
 STAGES = ("room", "fuzz", "own", "rooms", "proof", "slow")
 SURVIVORS = ["file", "line", "becomes", "passed"]
 EQUAL_LINE = re.compile(r" \(equal line (\d+) of the file\)$")
@@ -93,7 +93,7 @@ def all_places(only):
     for folder in FOLDERS:
         for path in tracked_files(folder):
             name = path.relative_to(ROOT).as_posix()
-            if path.suffix in {".h", ".cpp"} and not HELPER.search(path.name) and (not only or name in only):
+            if path.suffix in {".h", ".cpp"} and not HELPER.search(path.name) and (not only or any(path.is_relative_to(ROOT / one) for one in only)):
                 yield from mutations_of(name, path.read_text(), macros)
 
 
@@ -101,8 +101,9 @@ def named(line, copy):
     return line + (f" (equal line {copy + 1} of the file)" if copy else "")
 
 
-def write(results, places, origin):
-    """The record of all results whose places are still there; `origin` is the record whose survivors they are, or None."""
+def write(results, places, origin, only):
+    """The record of all results whose places are still there; `origin` is the record whose survivors they are, and `only` the files and
+    folders that were asked, or None."""
     known = {place.key: place for place in places}
     entries = [results[key] for key in results if key in known]
     tried = len(entries)
@@ -131,9 +132,10 @@ def write(results, places, origin):
     write_record({
         "kind": "mutants" + ("-asked-again" if origin else ""),
         "title": "Mutants" + (" that were asked again" if origin else ""),
-        "command": "scripts/find-faults mutants" + (f" --from results/trust/{origin.name}" if origin else ""),
+        "command": "scripts/find-faults mutants" + "".join(f" --only {name}" for name in only or [])
+                   + (f" --from results/trust/{origin.name}" if origin else ""),
         "says": f"The mutants of `{origin.name}` that had survived without a reason, after tests were written for them." if origin
-                else "Small mistakes in `core/geometry`, `core/elementary` and `core/fast`, made one at a time at places that "
+                else f"Small mistakes in {' and '.join(f'`{name}`' for name in only or FOLDERS)}, made one at a time at places that "
                      "were drawn at random, and the tests that notice them.",
         "headline": f"{killed} of {translated} mutants that change the program are found",
         "figures": [["places", len(places)], ["mutants tried", tried],
@@ -164,7 +166,7 @@ def write(results, places, origin):
 def main():
     parser = parser_of(__doc__)
     parser.add_argument("--list", action="store_true", help="print the chosen mutants; with --count 0, how many places there are")
-    parser.add_argument("--only", action="append", help="a file; can be given several times")
+    parser.add_argument("--only", action="append", help="a file or a folder; can be given several times")
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--seed", type=int, default=2014)
     parser.add_argument("--stages", default="room,fuzz", help="which of room,fuzz,own,rooms,proof,slow; default room,fuzz")
@@ -176,8 +178,8 @@ def main():
     options.stages = options.stages.split(",")
     if unknown := set(options.stages) - set(STAGES):
         refuse(f"--stages does not know {', '.join(sorted(unknown))}; choose from {', '.join(STAGES)}")
-    if missing := [name for name in options.only or [] if not (ROOT / name).is_file()]:
-        refuse(f"--only {missing[0]} is no file of the repository")
+    if missing := [name for name in options.only or [] if not (ROOT / name).exists()]:
+        refuse(f"--only {missing[0]} is no file and no folder of the repository")
     places = list(all_places(options.only))
     wanted = chosen(places, options.count, random.Random(options.seed))
     if options.list:
@@ -190,7 +192,7 @@ def main():
         before = survivors_of(read_json(options.origin))
         results = {key: results.get(key, before[key]) for key in before}
     if options.record:
-        write(results, places, options.origin)
+        write(results, places, options.origin, options.only)
         return 0
     if options.resume or options.origin:
         wanted = [place for place in places if place.key in results]
