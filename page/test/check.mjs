@@ -10,7 +10,9 @@ import { openBrowser, require } from "./browser.mjs";
 const [packages, file, ...options] = process.argv.slice(2);
 const option = (name) => (options.includes(name) ? options[options.indexOf(name) + 1] : null);
 
-const { browser, page, complaints, requests } = await openBrowser(packages, { width: 1100, height: 720 });
+const folder = option("--pictures");
+// Software draws: a small window where nobody looks at it.
+const { browser, page, complaints, requests } = await openBrowser(packages, folder ? { width: 1100, height: 720 } : { width: 880, height: 560 });
 
 // What the canvas shows, as 160 x 120 pixels of red, green and blue.
 const look = () => page.evaluate(() => {
@@ -30,7 +32,6 @@ const different = (a, b) => {
 };
 const settle = () => page.waitForFunction(() => !window.cscd.stage.flight && !window.cscd.stage.requested);
 const clock = () => page.textContent("#clock");
-const folder = option("--pictures");
 const picture = async (name) => {
   if (!folder) return;
   mkdirSync(folder, { recursive: true });

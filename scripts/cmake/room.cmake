@@ -35,15 +35,14 @@ function(cscd_compile_together target)
   endif()
 endfunction()
 
-# Rooms whose time is recorded: each file is compiled alone, so that no other file changes what the compiler makes of it. The build for
-# the tests (test.cmake) times nothing.
-option(CSCD_UNITY_OF_ALL "Compile several files at once of rooms whose time is recorded, too" OFF)
+# Rooms whose time is recorded: each file is compiled alone, so that no other file changes what the compiler makes of it.
+option(CSCD_UNTIMED "Nothing is timed in this build: compile several files at once of these rooms, too, and optimise bench/ less" OFF)
 set(CSCD_ROOMS_FILE_BY_FILE "^(core|library|baselines)(/|$)|^bench/measure/(strategies|kernels)$")
 # Rooms that run once for each command or file. Optimising these takes longer than it saves.
 set(CSCD_BRIEF_ROOMS "^bench/(tables|compare|benchmark|statistics|records|inputs|command_line)(/|$)|^bench/(cli|query|measure)$|^bench/(cli/interface|query/view|measure/studies|measure/shards)$|^scenes/(import|export|exchange|catalog)(/|$)")
 # Rooms whose tests reckon themselves for many thousand cases, such as with an oracle; and scenes/export, because headers that
 # are parsed with meshoptimizer's macro serve nobody else.
-set(CSCD_ROOMS_WHOSE_TESTS_RECKON "^(core|baselines|library)(/|$)|^scenes/(hard|effects|motion|catalog|export)$|^bench/(query|compare|harness)$")
+set(CSCD_ROOMS_WHOSE_TESTS_RECKON "^(core|baselines|library)(/|$)|^scenes/(hard|effects|motion|catalog|export)$|^bench/(compare|harness)$")
 
 # A room is one folder: every x.cpp in it is the room's library, every x_test.cpp the room's test program.
 #
@@ -80,10 +79,10 @@ function(cscd_room path)
     target_include_directories(${room} PUBLIC ${PROJECT_SOURCE_DIR})
     target_link_libraries(${room} PUBLIC ${below} ${ROOM_LINK} PRIVATE cscd_flags)
     set(level full)
-    if(CSCD_UNITY_OF_ALL OR NOT path MATCHES "${CSCD_ROOMS_FILE_BY_FILE}")
+    if(CSCD_UNTIMED OR NOT path MATCHES "${CSCD_ROOMS_FILE_BY_FILE}")
       cscd_compile_together(${room})
     endif()
-    if(path MATCHES "${CSCD_BRIEF_ROOMS}")
+    if(path MATCHES "${CSCD_BRIEF_ROOMS}" OR (CSCD_UNTIMED AND path MATCHES "^bench/"))
       set(level brief)
       target_compile_options(${room} PRIVATE $<$<CONFIG:Release>:-O1>)
     endif()

@@ -3,5 +3,5 @@
 include(${CMAKE_CURRENT_LIST_DIR}/release.cmake)
 # FORCE: a folder that was configured without assertions has other flags in its cache.
 set(CMAKE_CXX_FLAGS_RELEASE "-O3 -DEIGEN_NO_DEBUG -DCGAL_NDEBUG" CACHE STRING "" FORCE)
-set(CSCD_UNITY_OF_ALL ON CACHE BOOL "")
+set(CSCD_UNTIMED ON CACHE BOOL "")
 set(CSCD_WARNINGS_AS_ERRORS ON CACHE BOOL "")

@@ -8,7 +8,7 @@ set(CMAKE_CXX_COMPILER_TARGET wasm32-wasi)
 set(CMAKE_CXX_FLAGS_INIT "-msimd128 -fwasm-exceptions")
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG" CACHE STRING "")
 set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
-set(CSCD_UNITY_OF_ALL ON CACHE BOOL "")
+set(CSCD_UNTIMED ON CACHE BOOL "")
 set(CMAKE_DISABLE_FIND_PACKAGE_TBB ON)
 # Only Boost's headers, without those of the machine's C library beside them.
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/boost)

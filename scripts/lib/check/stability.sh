@@ -27,19 +27,11 @@ part() {
   parts+=("$name")
 }
 part rows core/elementary/{additive,cubic,inclusion,newton,catalogue} scenes/queries/query_file
-part filtered core/elementary/certified/{close_doubles,filtered_exact,integer_roots,integer_signs,integer_contact}
-part ties core/elementary/certified/close_integers
-part lanes core/elementary/certified/exact_lanes
-part single core/detect/single_filter
-part distance core/detect/distance_filter
-part exact core/elementary/exact/{exact,algebraic,closeness,integer,polynomial,touch}
-part starts core/elementary/exact/static_contact
-part meshes core/detect/{double_filter,carried_pairs,compose,contact,feature_owners,filter_block,no_contact_before} \
-  core/mesh/triangle_mesh core/geometry/feature_distance
-part base core/base/{memory,thread_pool}
-part exclusions core/detect/exclusions
-part bounds core/hierarchy/{bounds,loose_vertices,scalar_bounds,tree,vertex_bounds}
-part plain core/detect/plain_sign
+part certified core/elementary/certified/{close_doubles,close_integers,exact_lanes,filtered_exact,integer_roots,integer_signs,integer_contact}
+part exact core/elementary/exact/{exact,algebraic,closeness,integer,polynomial,static_contact,touch} core/base/{memory,thread_pool} \
+  core/hierarchy/{bounds,loose_vertices,scalar_bounds,tree,vertex_bounds} core/mesh/triangle_mesh
+part detect core/detect/{carried_pairs,compose,contact,distance_filter,double_filter,exclusions,feature_owners,filter_block} \
+  core/detect/{no_contact_before,plain_sign,single_filter} core/geometry/feature_distance
 part digest scripts/lib/check/digest
 
 variants=("g++ -O0")

@@ -34,7 +34,7 @@ export WINEPREFIX=$build/wine WINEDEBUG=-all WINEPATH
 WINEPATH="$(dirname "$(x86_64-w64-mingw32-g++-posix -print-file-name=libstdc++-6.dll)");/usr/x86_64-w64-mingw32/lib;$CSCD_WINDOWS/bin"
 
 say "build"
-configure "$root" "$build" -DCSCD_LIBRARY_ONLY=ON -DCSCD_LIBRARY_TESTS=ON
+configure "$root" "$build" -DCSCD_LIBRARY_ONLY=ON -DCSCD_LIBRARY_TESTS=ON -DCSCD_UNTIMED=ON
 ninja -C "$build" all
 digest=$root/library/consumer/digest.cpp
 x86_64-w64-mingw32-g++-posix -std=c++20 -O2 -I "$root/library/include" -isystem /usr/include/eigen3 "$digest" "$build/libcscd.a" \
