@@ -101,6 +101,9 @@ function(cscd_room path)
   if(BUILD_TESTING AND tests)
     add_executable(${room}_test ${tests})
     target_link_libraries(${room}_test PRIVATE ${room} ${test_below} ${GMPXX_LIBRARY} ${GMP_LIBRARY} GTest::gtest_main cscd_flags)
+    if(WIN32)  # a test's own operator new takes the place of the run-time library's only where that is no DLL
+      target_link_options(${room}_test PRIVATE -static)
+    endif()
     # Tests may compute with the fractions of GMP. A test often runs once for each time that it is compiled: optimising it takes
     # longer than it saves, but for those that reckon themselves.
     set(optimised -O0)
