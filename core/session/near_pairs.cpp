@@ -292,7 +292,7 @@ void NearPairs::pass_on(const Motion& motion, TrianglePairSink& sink) const {
 }
 
 std::unique_ptr<Detector> make_near_detector(const NearPairs& near, const StrategyInput& setup) {
-  return compose(std::make_unique<NearCuller>(near), setup, {.threads = setup.threads});
+  return compose(std::make_unique<NearCuller>(near), setup, {.threads = setup.threads, .owners = true});
 }
 
 }  // namespace cscd
