@@ -29,7 +29,7 @@ export async function openBrowser(packages, viewport) {
   const browser = await chromium.launch({
     executablePath, args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
   });
-  const page = await browser.newPage({ viewport, reducedMotion: "reduce" });  // flights of the camera take software long to draw
+  const page = await browser.newPage({ viewport, reducedMotion: "reduce" });  // software takes long to draw flights of the camera
   const complaints = [], requests = [];
   page.on("console", (message) => { if (["error", "warning"].includes(message.type())) complaints.push(message.text()); });
   page.on("pageerror", (error) => complaints.push(String(error)));

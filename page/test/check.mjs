@@ -200,7 +200,7 @@ try {
       return boxes.map((box) => active.folds.has(keys.find((key) => list.groups.get(key).details === box)));
     });
     require(order.lastIndexOf(false) < order.indexOf(true) || !order.includes(true), `folds at joints are not listed last: ${order}`);
-    await page.emulateMedia({ reducedMotion: null });  // this one flies
+    await page.emulateMedia({ reducedMotion: null });  // one flight of the camera is looked at
     await row.click();
     await settle();
     await page.emulateMedia({ reducedMotion: "reduce" });

@@ -93,7 +93,8 @@ def all_places(only):
     for folder in FOLDERS:
         for path in tracked_files(folder):
             name = path.relative_to(ROOT).as_posix()
-            if path.suffix in {".h", ".cpp"} and not HELPER.search(path.name) and (not only or any(path.is_relative_to(ROOT / one) for one in only)):
+            is_asked = not only or any(path.is_relative_to(ROOT / one) for one in only)
+            if is_asked and path.suffix in {".h", ".cpp"} and not HELPER.search(path.name):
                 yield from mutations_of(name, path.read_text(), macros)
 
 
