@@ -116,7 +116,8 @@ PosedMesh scaled(std::uint64_t seed) {
 PosedMesh folded(std::uint64_t seed) {
   Random random(seed);
   Surface sheet;
-  scenes::append_sheet(sheet, random.integer(2, 5), 2 * random.integer(1, 3), 2, 2);
+  const int across = 2 * random.integer(1, 3);
+  scenes::append_sheet(sheet, random.integer(2, 5), across, 2, 2);
   const double gap =
       std::array{0.0, 0.0, 0x1p-30, -0.25, 0.25}[static_cast<std::size_t>(random.integer(0, 4))];
   return moved(sheet, mapped(sheet.positions, [&](const Vec3& p) {

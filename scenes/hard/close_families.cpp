@@ -32,8 +32,7 @@ using Pose = std::array<Vec3, 4>;
 // corner of a face; the insides of two edges, an end and an inside, or two ends. At times the nearest points
 // lie on the border of two cases.
 Pose pose_of_case(Kind kind, int number, const Frame& f, double r, Random& random) {
-  const Vec3 a(random.integer(-8, 8), random.integer(-8, 8), random.integer(-8, 8)),
-      gap = r / f.length * f.along;
+  const Vec3 a = random.whole(-8, 8), gap = r / f.length * f.along;
   const double u = random.integer(0, 4), v = random.integer(0, 4 - static_cast<int>(u));
   // Away from the other feature, or beside the nearest point on the border.
   const Vec3 back = random.integer(0, 3) * f.along;
@@ -73,7 +72,8 @@ CloseQuery make_nearest_features(Kind kind, Random& random) {
   const Frame f = lattice_frame(random);
   const double r = f.length * random.integer(1, 4);
   const Pose pose = pose_of_case(kind, random.integer(0, 2), f, r, random);
-  const Vec3 drift = random.integer(-1, 1) * f.across + random.integer(-1, 1) * f.aside;
+  const Vec3 sideways = random.integer(-1, 1) * f.aside;
+  const Vec3 drift = random.integer(-1, 1) * f.across + sideways;
   // Half of the features stop where they are exactly r apart.
   Query query = passing(kind, pose, drift - side(kind) * f.along);
   if (random.integer(0, 1) == 1)
@@ -85,15 +85,15 @@ CloseQuery make_grazing_at_r(Kind kind, Random& random) {
   const Frame f = lattice_frame(random);
   const double r = f.length * random.integer(1, 4);
   const Pose pose = pose_of_case(kind, random.integer(0, 2), f, r, random);
-  const Vec3 way = random.integer(1, 3) * f.across + random.integer(-3, 3) * f.aside;
+  const Vec3 sideways = random.integer(-3, 3) * f.aside;
+  const Vec3 way = random.integer(1, 3) * f.across + sideways;
   return {passing(kind, pose, way), about(r, random)};
 }
 
 CloseQuery make_parallel_at_r(Kind kind, Random& random) {
   const Frame f = lattice_frame(random);
   const double r = f.length * random.integer(1, 4);
-  const Vec3 a(random.integer(-8, 8), random.integer(-8, 8), random.integer(-8, 8)),
-      b = a + r / f.length * f.along;
+  const Vec3 a = random.whole(-8, 8), b = a + r / f.length * f.along;
   const double from = random.integer(-6, 6), to = from + random.integer(1, 6);
   // Across the gap, along the edges, or with a turn out of the parallel.
   const int way = random.integer(0, 2);
@@ -112,7 +112,8 @@ CloseQuery make_ends_at_r(Kind kind, Random& random) {
   const Frame f = lattice_frame(random);
   const double r = f.length * random.integer(1, 4);
   const Pose pose = pose_of_case(kind, random.integer(0, 2), f, r, random);
-  const Vec3 way = side(kind) * random.integer(1, 4) * f.along + random.integer(-2, 2) * f.across;
+  const Vec3 sideways = random.integer(-2, 2) * f.across;
+  const Vec3 way = side(kind) * random.integer(1, 4) * f.along + sideways;
   const bool at_start = random.integer(0, 1) == 1;
   Query query = passing(kind, pose, way);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -127,7 +128,8 @@ CloseQuery make_tiny_r(Kind kind, Random& random) {
   const Frame f = lattice_frame(random);
   const double r = std::ldexp(f.length, exponents[static_cast<std::size_t>(random.integer(0, 5))]);
   // The features touch at t = 1/2, or stay a hair apart there; or they stop within r or just not.
-  const Pose pose = pose_of_case(kind, random.integer(0, 2), f, random.integer(0, 2) * r, random);
+  const double apart = random.integer(0, 2) * r;
+  const Pose pose = pose_of_case(kind, random.integer(0, 2), f, apart, random);
   Query query = passing(kind, pose, (random.integer(0, 1) - side(kind)) * f.along + f.across);
   if (random.integer(0, 1) == 1)
     for (std::size_t i = 0; i < 4; ++i) query.points[i].end = pose[i];
@@ -138,7 +140,8 @@ CloseQuery make_huge_r(Kind kind, Random& random) {
   const Frame f = lattice_frame(random);
   const double r = std::ldexp(f.length, random.integer(10, 44));
   const Pose pose = pose_of_case(kind, random.integer(0, 2), f, r, random);
-  const Vec3 way = random.integer(-1, 1) * f.along + random.integer(-1, 1) * f.across;
+  const Vec3 sideways = random.integer(-1, 1) * f.across;
+  const Vec3 way = random.integer(-1, 1) * f.along + sideways;
   return {passing(kind, pose, way), about(r, random)};
 }
 

@@ -1,3 +1,4 @@
+#include <bit>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <map>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/digest.h"
 #include "core/elementary/catalogue.h"
 #include "core/elementary/exact/closeness.h"
 #include "core/elementary/exact/exact.h"
@@ -251,6 +253,23 @@ TEST(CloseCases, EveryFamilyHasCloseQueriesAndOthers) {
         EXPECT_LT(number, count * 19 / 20) << family.name << static_cast<int>(kind);
       }
     }
+}
+
+// Mutation: two numbers are drawn as arguments of one call, in an order that each compiler chooses for
+// itself.
+TEST(CloseCases, AreTheSameWithEveryCompiler) {
+  std::uint64_t digest = kDigestOfNothing;
+  const auto add = [&](double value) { digest = digest_step(digest, std::bit_cast<std::uint64_t>(value)); };
+  for (const CloseFamily& family : close_families())
+    for (const Kind kind : {Kind::vertex_face, Kind::edge_edge})
+      for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        Random random(seed);
+        const CloseQuery made = family.make(kind, random);
+        add(made.r);
+        for (const MovingPoint& point : made.query.points)
+          for (int axis = 0; axis < 3; ++axis) add(point.start[axis]), add(point.end[axis]);
+      }
+  EXPECT_EQ(hex_text(digest), "e849714b8a86e6b6");
 }
 
 // All seven cases of a vertex and a face and all nine of two edges come up where features become close.

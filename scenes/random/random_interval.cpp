@@ -63,8 +63,7 @@ Build noisy_ball(Random& random) {
   append_sphere(build.surface, random.integer(1, 2), 1, Vec3::Zero());
   build.add_chain(random.integer(1, 3), 1);
   build.noise = random.uniform(0.05, 0.5);
-  build.end.linear.diagonal() =
-      Vec3(random.uniform(0.2, 1.5), random.uniform(0.2, 1.5), random.uniform(0.2, 1.5));
+  build.end.linear.diagonal() = random.between(Vec3::Constant(0.2), Vec3::Constant(1.5));
   return build;
 }
 
@@ -77,7 +76,7 @@ Build folding_tube(Random& random) {
   build.start.bend = random.uniform(0, 0.75) * circle;
   build.end.bend = random.uniform(0.7, 1.3) * circle;
   build.end.twist = random.uniform(-0.4, 0.4);
-  build.noise = random.integer(0, 1) * random.uniform(0, 0.1);
+  build.noise = random.at_times(0, 0.1);
   return build;
 }
 
@@ -108,7 +107,7 @@ Build bumpy_segment(Random& random) {
   tube.radii = {0.1, random.uniform(0.3, 1), random.uniform(0.1, 0.4), random.uniform(0.3, 1), 0.1};
   append_tube(build.surface, tube);
   build.add_chain(1, length);
-  build.end.linear.diagonal() = Vec3(random.uniform(-0.2, 1), random.uniform(0.3, 1), random.uniform(0.1, 1));
+  build.end.linear.diagonal() = random.between({-0.2, 0.3, 0.1}, {1, 1, 1});
   build.end.bend = random.uniform(0, 1) * 2 * std::numbers::pi / length;
   build.noise = random.uniform(0, 0.5);
   return build;
@@ -118,8 +117,10 @@ Build several_components(Random& random) {
   Build build;
   const int count = random.integer(2, 4);
   for (int i = 0; i < count; ++i) {
-    const Vec3 centre(random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), 2.3 * i);
-    append_sphere(build.surface, random.integer(0, 1), random.uniform(0.6, 1), centre);
+    const double y = random.uniform(-0.2, 0.2), x = random.uniform(-0.2, 0.2),
+                 radius = random.uniform(0.6, 1);
+    const Vec3 centre(x, y, 2.3 * i);
+    append_sphere(build.surface, random.integer(0, 1), radius, centre);
     build.add_chain(random.integer(1, 2), 1, centre);
   }
   build.end.linear(2, 2) = random.uniform(0.4, 1.1);
@@ -132,7 +133,9 @@ Build nested_components(Random& random) {
   Build build;
   append_sphere(build.surface, 1, 2, Vec3::Zero());
   const std::size_t outer = build.surface.positions.size();
-  append_sphere(build.surface, random.integer(0, 1), random.uniform(0.3, 0.8), random.in_box(0.3));
+  const Vec3 centre = random.in_box(0.3);
+  const double radius = random.uniform(0.3, 0.8);
+  append_sphere(build.surface, random.integer(0, 1), radius, centre);
   if (random.integer(0, 1) == 0) {
     build.noise = random.uniform(0.2, 1.2);
     build.add_chain(random.integer(1, 2), 2);
@@ -178,7 +181,7 @@ Build horned_ball(Random& random) {
     build.target[tip] = low * (std::cos(fall) * up + std::sin(fall) * aside);
   }
   build.add_chain(random.integer(1, 2), 1);
-  build.noise = random.integer(0, 1) * random.uniform(0, 0.05);
+  build.noise = random.at_times(0, 0.05);
   return build;
 }
 
@@ -212,11 +215,12 @@ Build finger_over_segment(Random& random) {
   for (Triangle& corner : build.surface.triangles)
     std::rotate(corner.begin(), corner.begin() + random.integer(0, 2), corner.end());
   build.target = build.surface.positions;
-  const Vec3 poke = random.uniform(0.9, 1.5) * kFingerPoke + random.in_box(0.02);
+  const Vec3 aside = random.in_box(0.02);
+  const Vec3 poke = random.uniform(0.9, 1.5) * kFingerPoke + aside;
   for (std::size_t i = 0; i < 4; ++i) build.target[i] += poke;
   build.parent = {BoneId{-1}};
   build.bones = {{{-1, 0, 0}, {1, 0, 0}}};
-  build.noise = random.integer(0, 1) * random.uniform(0, 0.01);
+  build.noise = random.at_times(0, 0.01);
   return build;
 }
 
@@ -233,14 +237,14 @@ Build touching_lattice(Random& random) {
     if (axis > 0 && random.integer(0, 1) == 0) continue;
     const double side = random.integer(0, 1) == 0 ? -1 : 1;
     const int size = random.integer(1, 3);
-    Vec3 centre(random.integer(-5, 5), random.integer(-5, 5), random.integer(-5, 5));
+    Vec3 centre = random.whole(-5, 5);
     centre[axis] = side * (4 + size);  // at the end it touches the side of the box, or lies beside it
     const std::size_t first = build.surface.positions.size();
     if (random.integer(0, 1) == 0)
       append_sphere(build.surface, 0, size, centre);
     else
       append_box(build.surface, centre - Vec3::Constant(size), centre + Vec3::Constant(size));
-    Vec3 away(random.integer(-1, 1), random.integer(-1, 1), random.integer(-1, 1));
+    Vec3 away = random.whole(-1, 1);
     away[axis] = side * random.integer(5, 9);
     for (std::size_t i = first; i < build.surface.positions.size(); ++i) {
       build.target.push_back(build.surface.positions[i]);
@@ -256,15 +260,17 @@ Build touching_lattice(Random& random) {
 Build open_sheet(Random& random) {
   Build build;
   const double length = random.uniform(2, 6), circle = 2 * std::numbers::pi / length;
-  append_sheet(build.surface, random.integer(3, 14), random.integer(2, 8), length, random.uniform(0.5, 3));
+  const double width = random.uniform(0.5, 3);
+  const int across = random.integer(2, 8);
+  append_sheet(build.surface, random.integer(3, 14), across, length, width);
   build.add_chain(random.integer(1, 3), length);
-  build.start_noise = random.integer(0, 1) * random.uniform(0, 0.1);
-  build.start.bend = random.integer(0, 1) * random.uniform(0, 0.8) * circle;
+  build.start_noise = random.at_times(0, 0.1);
+  build.start.bend = random.at_times(0, 0.8) * circle;
   build.end.bend = random.uniform(0, 1.6) * circle;
-  build.end.pitch = random.integer(0, 1) * random.uniform(0, 0.3);
-  build.end.twist = random.integer(0, 1) * random.uniform(-1, 1);
-  build.end.linear.diagonal() = Vec3(random.uniform(0, 1), random.uniform(0.5, 1), random.uniform(0.2, 1));
-  build.noise = random.integer(0, 1) * random.uniform(0, 0.3);
+  build.end.pitch = random.at_times(0, 0.3);
+  build.end.twist = random.at_times(-1, 1);
+  build.end.linear.diagonal() = random.between({0, 0.5, 0.2}, {1, 1, 1});
+  build.noise = random.at_times(0, 0.3);
   return build;
 }
 

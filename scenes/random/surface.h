@@ -9,8 +9,9 @@
 
 namespace cscd::scenes {
 
-// A generator that gives the same numbers with every standard library. The distributions of the standard
-// library do not promise that.
+// A generator that gives the same numbers with every compiler and standard library. The distributions of the
+// standard library do not promise that; nor does C++ say which of a call's arguments is drawn first, so each
+// draw is a statement of its own, or stands in braces.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -19,6 +20,21 @@ class Random {
   }
   int integer(int low, int high) {  // both inclusive
     return low + static_cast<int>(engine_() % static_cast<std::uint64_t>(high - low + 1));
+  }
+  // Half of the time 0.
+  double at_times(double low, double high) {
+    const bool drawn = integer(0, 1) == 1;  // the other number is drawn in any case
+    const double value = uniform(low, high);
+    return drawn ? value : 0;
+  }
+  // The next two draw z first, then y, then x: records hold samples that were drawn so.
+  Vec3 between(const Vec3& low, const Vec3& high) {
+    const double z = uniform(low.z(), high.z()), y = uniform(low.y(), high.y());
+    return {uniform(low.x(), high.x()), y, z};
+  }
+  Vec3 whole(int low, int high) {
+    const int z = integer(low, high), y = integer(low, high);
+    return Vec3(integer(low, high), y, z);
   }
   Vec3 in_box(double half) { return {uniform(-half, half), uniform(-half, half), uniform(-half, half)}; }
 
