@@ -6,6 +6,7 @@
 #include "core/detect/carried_pairs.h"
 #include "core/detect/contact_geometry.h"
 #include "core/detect/filter_block.h"
+#include "core/elementary/exact/static_contact.h"
 #include "core/geometry/nearest_points.h"
 
 namespace cscd {
@@ -37,6 +38,10 @@ void NearCollector::take(const std::vector<TrianglePair>& block) {
     const auto before = no_contact_before(mesh_, rest, pairs, reach_);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (before[i] > 1) continue;
+      if (triangles_meet(mesh_, pose_, pairs[i].a, pairs[i].b)) {
+        out_.push_back({0, pairs[i]});
+        continue;
+      }
       const Triangle &a = mesh_.corners(pairs[i].a), &b = mesh_.corners(pairs[i].b);
       const CarriedPlaces near = not_farther_than(reach_, rest, a, b, carried_by(a, b));
       if (near == 0) continue;

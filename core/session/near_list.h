@@ -11,7 +11,8 @@ namespace cscd {
 
 // Two triangles that are near each other in some pose.
 struct NearPair {
-  double low;  // the two are at least so far apart in that pose
+  // What the two carry is at least so far apart in that pose; 0 where they cross, however far that is.
+  double low;
   TrianglePair pair;
 };
 

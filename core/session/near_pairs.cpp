@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "core/base/rounding.h"
 #include "core/detect/compose.h"
@@ -27,6 +28,8 @@ constexpr double kLeastRoom = 0.0625;
 // reaches farther, by the factor.
 constexpr std::size_t kTrianglesForOne = 8, kLeastMany = 1024;
 constexpr double kFew = 0.5, kFarther = 2;
+// After so many lists, which have taken about as long as an anchor, an anchor that reaches farther is made.
+constexpr std::size_t kListsOfNearAnchor = 16;
 // The work of a strategy is counted in pairs of triangles: those that it tests, one for so many overlap
 // tests, and one for so many triangles that it looks at.
 constexpr std::size_t kOverlapTests = 32, kLookedAt = 16;
@@ -103,6 +106,16 @@ double low_height(const TriangleMesh& mesh, std::span<const Vec3> pose) {
   const auto low = height.begin() + static_cast<std::ptrdiff_t>(height.size() / kFewLow);
   std::ranges::nth_element(height, low);
   return *low;
+}
+
+// Of a pair that is listed several times, keeps what says most.
+void keep_one_of_each(std::vector<NearPair>& near) {
+  const auto triangles = [](const NearPair& of) { return std::minmax(of.pair.a, of.pair.b); };
+  std::ranges::sort(near, [&](const NearPair& a, const NearPair& b) {
+    return std::tuple(triangles(a), b.low) < std::tuple(triangles(b), a.low);
+  });
+  const auto rest = std::ranges::unique(near, {}, triangles);
+  near.erase(rest.begin(), rest.end());
 }
 
 class NearCuller : public Culler {
@@ -229,6 +242,8 @@ bool NearPairs::anchor(std::span<const Vec3> pose, Detector& detector) {
     most_room_ = std::min(kFarther * room, kMostReach * edge_);
   use_list(collector.reach());
   is_anchor_ = true;
+  anchor_room_ = room;
+  lists_of_anchor_ = 0;
   return true;
 }
 
@@ -254,14 +269,16 @@ void NearPairs::take_anchor(const Complete& complete) {
 bool NearPairs::list(std::span<const Vec3> pose, double room, const Complete& complete) {
   if (is_anchor_) take_anchor(complete);
   if (!motions_ || !motions_->has_anchor()) return false;
+  if (++lists_of_anchor_ > kListsOfNearAnchor && most_room_ > anchor_room_) return forget_anchor(), false;
   reach_ = 0, near_.clear();
   pose_.assign(pose.begin(), pose.end());
-  const double reach = thickness_.largest() + std::min(room, kOfLists * most_room_);
+  const double reach = thickness_.largest() + std::min(room, kOfLists * anchor_room_);
   NearCollector collector(mesh_, pose_, std::max(kLeastMany, mesh_.triangle_count()), reach, near_);
   const auto most = static_cast<std::size_t>(kBent * static_cast<double>(looked_at_));
   const std::optional<std::size_t> bent =
       motions_->pass_on(pose_, reach, most - std::min(most, bent_), near_, collector);
   if (!bent || collector.closed()) return motions_->forget_anchor(), false;
+  if (*bent > 0) keep_one_of_each(near_);
   bent_ += *bent;
   use_list(collector.reach());
   return true;

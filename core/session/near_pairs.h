@@ -18,13 +18,13 @@
 
 namespace cscd {
 
-// The pairs of triangles that are near each other in one pose. While the surface stays near that pose, all
-// others are apart, so that a small step costs little more than a look at its positions (core/soundness.md,
-// "Theorem: small steps near a pose").
+// The pairs of triangles that are near each other, or cross, in one pose. While the surface stays near that
+// pose, all others are apart, so that a small step costs little more than a look at its positions
+// (core/soundness.md, "Theorem: small steps near a pose").
 //
-// A complete strategy finds the first list: it is asked about the pose at rest. That pose is the *anchor*.
-// When the surface has moved on, the next list is made from the anchor by what patches have kept of their
-// shape (PatchMotions). The strategy is asked again only where too many patches have bent.
+// A complete strategy that sees starts finds the first list: it is asked about the pose at rest. That pose is
+// the *anchor*. When the surface has moved on, the next list is made from the anchor by what patches have
+// kept of their shape (PatchMotions). The strategy is asked again only where too many patches have bent.
 //
 // The object takes 24 bytes for each vertex and for each listed pair, and what PatchMotions takes. Lists hold
 // at most twice as many pairs as there are triangles, or two thousand.
@@ -36,7 +36,7 @@ class NearPairs {
 
   // Takes note of what a strategy did in a step. No list is made before that is known.
   void note_work(const CullCounts& counts);
-  // Returns the detector of a complete strategy, or null where that is not to be asked yet.
+  // Returns the detector of a complete strategy that sees starts, or null where that is not to be asked yet.
   using Complete = std::function<Detector*()>;
   // Returns whether all pairs that come within their thickness during a step are in the list. Makes another
   // list where steps are so small that it is likely to pay. Positions have to be finite.
@@ -76,8 +76,10 @@ class NearPairs {
   double length_ = 0;           // of the last step that was worth a list
 
   double most_room_;        // how far beyond the thickness the next anchor may reach
+  double anchor_room_ = 0;  // how far beyond it the last one reaches
   std::size_t work_ = 0;    // of a strategy in the last step that it answered; 0 before the first
-  std::size_t served_ = 0;  // steps that were covered since the last anchor
+  // Steps that were covered, and lists that were made from it, since the last anchor.
+  std::size_t served_ = 0, lists_of_anchor_ = 0;
   // Pairs that were looked at for the last anchor, and since then because patches have bent.
   std::size_t looked_at_ = 0, bent_ = 0;
   // After an anchor that served too few steps, so many steps go by before the next one, unless steps are far

@@ -122,6 +122,29 @@ TEST_F(NearPairsTest, AnswerAsTheStrategiesDo) {
     }
 }
 
+// Where something is close in every step, the first contact says nothing of the end, and so the start of the
+// next step is not known. Mutation: only steps from known starts are answered by a list.
+TEST_F(NearPairsTest, AnswerFromStartsThatAreNotKnown) {
+  const Thickness thickness(0.01);  // the balls are 0.005 apart
+  NearPairs near(*mesh_, shape_.positions, thickness);
+  Session with = session(true, &near, thickness), without = session(true, nullptr, thickness);
+  std::vector<Vec3> start = shape_.positions, end;
+  StepAnswer a, b;
+  int by_list = 0;
+  for (int n = 0; n < 100; ++n) {
+    SCOPED_TRACE(n);
+    end = next(start, 1e-5, n % 25 == 0);
+    with.step({start, end}, nullptr, a);
+    without.step({start, end}, nullptr, b);
+    ASSERT_FALSE(b.found.contacts.empty());
+    ASSERT_EQ(told(a.found), told(b.found));
+    ASSERT_EQ(a.start.pairs, b.start.pairs);
+    by_list += *a.report.cull.bvot == 0;
+    start = end;
+  }
+  EXPECT_GT(by_list, 90);
+}
+
 // Pieces that turn far while they stay as they are near each other: one anchor serves many lists.
 TEST_F(NearPairsTest, FollowWhatTurns) {
   NearPairs near(*mesh_, shape_.positions, {});

@@ -114,6 +114,7 @@ Certainty Session::certainty_of(const Strategy& strategy) const {
 // the strategy finds it with its answer.
 Session::PreparedStrategy& Session::choose(const Motion& motion, const Rig::Interval* bones) {
   start_known_ = options_.ignore_starts || starts_.knows(motion.start());
+  if (is_near(motion)) return *near_;
   if (options_.ignore_starts) return main_;
   const bool sees_start = main_.strategy->sees_start;
   // A way from a pose that is not clear proves no other pose clear.
@@ -129,13 +130,14 @@ Session::PreparedStrategy& Session::choose(const Motion& motion, const Rig::Inte
   return needs_start() && !starts_.clear() ? fallback() : main_;
 }
 
-// Whether what is near (NearPairs) answers a step. A complete strategy finds what is near; where another one
-// answers, the fallback is prepared for that only after so many small steps that they have taken about as
-// long.
+// Whether what is near (NearPairs) answers a step, and finds what crosses at its start. A complete strategy
+// finds what is near; where another one answers, the fallback is prepared for that only after so many small
+// steps that they have taken about as long.
 bool Session::is_near(const Motion& motion) {
-  if (options_.near == nullptr || !start_known_) return false;
+  if (options_.near == nullptr || !fallback_strategy_.sees_start) return false;
   const auto complete = [&]() -> Detector* {
-    if (main_.strategy->guarantee == Guarantee::complete) return main_.detector.get();
+    if (main_.strategy->guarantee == Guarantee::complete && main_.strategy->sees_start)
+      return main_.detector.get();
     if (!fallback_ && ++small_steps_ < kSmallSteps) return nullptr;
     return fallback().detector.get();
   };
@@ -263,8 +265,7 @@ void Session::step(const Motion& motion, const Rig::Interval* bones, StepAnswer&
   const Stopwatch whole;
   begin(motion);
   try {
-    PreparedStrategy& otherwise = choose(motion, bones);
-    PreparedStrategy& chosen = is_near(motion) ? *near_ : otherwise;
+    PreparedStrategy& chosen = choose(motion, bones);
     out.embedding_ms = whole.milliseconds();
     ask(chosen, motion, bones, out);
     // A strategy that promises the first contact may miss those after it. If that first one is left out as a
