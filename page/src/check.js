@@ -1,13 +1,9 @@
 // The page that takes a file: hands it to the worker (check/worker.js), and the viewer what the worker says.
 import { listClips, worstClip } from "./clips.js";
-import { fromBase64, inflate, recordingOf } from "./data.js";
+import { recordingOf } from "./data.js";
 import { byId, prefersDark, setDark } from "./dom.js";
-import { requireBrowser, Viewer } from "./viewer.js";
-
-const PATIENCE = 60000;  // milliseconds without a word from the worker, after which it is stopped
-
-const pause = () => new Promise((go) => { setTimeout(go); });
-const bytesOf = (id) => inflate(fromBase64(byId(id).textContent));
+import { Engine, showRecording, TOOK_LONG } from "./engine.js";
+import { requireBrowser } from "./viewer.js";
 
 // An answer about nothing yet, so that the surface can be seen.
 function unanswered(name, title, { frames, triangles }) {
@@ -23,8 +19,7 @@ function unanswered(name, title, { frames, triangles }) {
 
 class Check {
   constructor() {
-    this.engine = bytesOf("engine");
-    this.worker = bytesOf("worker").then((bytes) => URL.createObjectURL(new Blob([bytes], { type: "text/javascript" })));
+    this.engine = new Engine();
     const onClick = (id, act) => byId(id).addEventListener("click", act);
     byId("files").addEventListener("change", ({ target }) => this.take(Array.from(target.files)));
     onClick("stop", () => this.stop("Stopped"));
@@ -40,7 +35,7 @@ class Check {
 
   // Asks for a file, after a refusal perhaps.
   ask(refusal) {
-    this.end();
+    this.engine.stop();
     this.run = { clips: [] };  // what is under way is for nobody
     byId("files").value = "";
     byId("refusal").textContent = refusal;
@@ -54,26 +49,12 @@ class Check {
     document.body.className = "checking unanswered reading";
     byId("file").textContent = files.map(({ name }) => name)[0] + (files.length > 1 ? ` and ${files.length - 1} more` : "");
     this.say("reading ...", 0);
-    const given = await Promise.all(files.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() })));
-    const [url, engine] = [await this.worker, (await this.engine).slice()];
-    if (this.run !== run) return;
-    run.worker = new Worker(url);
-    run.worker.onmessage = ({ data }) => this.hear(run, data);
-    run.worker.onerror = (event) => this.ask(`${files[0].name}: the page failed: ${event.message}`);
-    run.worker.postMessage({ files: given, engine }, [engine, ...given.map(({ bytes }) => bytes)]);
-    this.wait(run);
-  }
-
-  wait(run) {
-    clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.stop(`Stopped, because a frame took longer than ${PATIENCE / 1000} s; cscd query answers it`), PATIENCE);
-    if (!run.worker) clearTimeout(this.timer);
-  }
-
-  end() {
-    clearTimeout(this.timer);
-    this.run?.worker?.terminate();
-    if (this.run) this.run.worker = null;
+    const question = async () => {
+      const given = await Promise.all(files.map(async (file) => ({ name: file.name, bytes: await file.arrayBuffer() })));
+      return { message: { files: given }, transfer: given.map(({ bytes }) => bytes) };
+    };
+    const failed = (text) => this.ask(`${files[0].name}: the page failed: ${text}`);
+    await this.engine.ask(question, { hear: (data) => this.hear(run, data), failed, late: () => this.stop(TOOK_LONG) });
   }
 
   say(what, share) {
@@ -82,7 +63,6 @@ class Check {
   }
 
   hear(run, { kind, number, ...data }) {
-    this.wait(run);
     if (kind === "refused") this.ask(`${data.name}: ${data.text}${/[.!?]$/.test(data.text) ? "" : "."} It was not checked.`);
     if (kind === "read") Object.assign(run, { header: data.header, titles: data.clips, intervals: data.intervals });
     if (kind === "frames") {
@@ -104,25 +84,16 @@ class Check {
 
   async finish(what) {
     const { run } = this;
-    this.end();
+    this.engine.stop();
     this.say(what, 1);
     await this.show(worstClip(this.answered));
     if (this.run === run) document.body.className = "";
   }
 
-  // In steps, so that none blocks the page for long.
   async show(number) {
     const { run } = this, clips = this.answered.length > 0 ? this.answered : run.clips, { clip, frames, arrays, events, rest, strategy } = clips[number];
     const recording = (run.shown = recordingOf({ ...run.header, clip, events, rest, strategies: [strategy] }, { ...frames, ...arrays }));
-    await pause();
-    if (this.run !== run || run.shown !== recording) return;  // another one is wanted by now
-    this.viewer?.end();
-    const { canvas } = this.viewer?.stage ?? {}, elements = byId("view").content.cloneNode(true);
-    if (canvas) elements.getElementById("canvas").replaceWith(canvas);  // browsers hold few, and take long to make one
-    byId("viewer").replaceChildren(elements);
-    await pause();
-    if (this.run !== run || run.shown !== recording) return;
-    this.viewer = window.cscd = new Viewer(recording);
+    if (!(await showRecording(recording, () => this.run === run && run.shown === recording))) return;
     byId("details").textContent = run.header.notes;
     document.body.classList.remove("reading");
     if (this.answered.length < 2) return;

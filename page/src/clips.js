@@ -21,14 +21,15 @@ export function worstClip(clips) {
   return Math.max(0, clips.findIndex((clip) => (deepest > 0 ? depthIn(clip) === deepest : summaryOf(clip).verdict !== "clear")));
 }
 
-export function offerClips(header) {
+// `signal` ends it, where another viewer takes the place of the one that it is for.
+export function offerClips(header, signal) {
   if (!header.clips) return;
   const list = byId("clips"), shown = chosenClip(header);
   listClips(header, header.clips, shown);
   list.addEventListener("change", () => { window.location.hash = `clip=${list.value}`; });
   window.addEventListener("hashchange", () => {
     if (chosenClip(header) !== shown) window.location.reload();
-  });
+  }, { signal });
 }
 
 // The deepest first, then what crosses or touches, then the others, each in the order of the file.

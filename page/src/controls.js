@@ -62,7 +62,7 @@ function makeUp(viewer) {
 
 function onKey(viewer, event) {
   if (event.ctrlKey || event.altKey || event.metaKey) return;
-  if (event.target.matches("select, input[type=checkbox]") || (event.target.matches("button") && event.key === " ")) return;
+  if (event.target.matches("select, input:not([type=range])") || (event.target.matches("button") && event.key === " ")) return;
   const large = event.shiftKey ? 10 : 1, press = (id) => () => byId(id)?.click();
   const actions = {
     " ": () => viewer.setPlaying(!viewer.playing),

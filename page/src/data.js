@@ -1,10 +1,10 @@
 // Reads what `cscd view` put into the page: a header in JSON, and arrays of numbers that are compressed one by one. What the viewer
-// shows is made of both by recordingOf(), which the page that answers by itself (check.js) calls, too.
+// shows is made of both by recordingOf(), which the pages that answer by themselves (check.js, again.js) call, too.
 
 import { chosenClip } from "./clips.js";
 
 const TYPES = {
-  u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i8: Int8Array, i16: Int16Array, i32: Int32Array, f32: Float32Array,
+  u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i8: Int8Array, i16: Int16Array, i32: Int32Array, f32: Float32Array, f64: Float64Array,
 };
 
 export function fromBase64(text) {
@@ -92,6 +92,8 @@ function eventOf({ clip, strategies }, number) {
   return { number, name: event.first, other: event.second, out: event.out, atJoint: event.at_joint, first: from(event.begins), deepest: from(event.deepest), time: event.deepest.time, last: from(event.ends), point: event.point, depths: event.depth_at };
 }
 
+// Returns what recordingOf() takes, {header, arrays}, and laterArray(name), which unpacks one of the arrays that only the page's own
+// engine asks for: those whose names begin with "exact.".
 export async function loadRecording() {
   const text = document.getElementById("header");
   const packed = document.getElementById("arrays");
@@ -102,19 +104,23 @@ export async function loadRecording() {
   const bytes = fromBase64(packed.textContent);
   packed.remove();
   const arrays = {};
-  const prefix = whole.clips ? `c${clip_number}.` : "";
-  await Promise.all(header.sections.filter(({ name }) => name.startsWith(prefix)).map(async (section) => {
+  const prefix = whole.clips ? `c${clip_number}.` : "", exact = `${prefix}exact.`;
+  const unpack = async (section) => {
     const raw = await inflate(bytes.subarray(section.offset, section.offset + section.bytes))
       .catch(() => new ArrayBuffer(0));
     if (raw.byteLength !== section.raw) throw new Error(`The page is damaged: its array ${section.name} is not whole. Write it again with cscd view.`);
-    arrays[section.name.slice(prefix.length)] = new TYPES[section.type](raw);
+    return new TYPES[section.type](raw);
+  };
+  const laterArray = (name) => unpack(header.sections.find((section) => section.name === prefix + name));
+  await Promise.all(header.sections.filter(({ name }) => name.startsWith(prefix) && !name.startsWith(exact)).map(async (section) => {
+    arrays[section.name.slice(prefix.length)] = await unpack(section);
   }));
 
   const { clip } = header, rowBytes = Math.ceil(clip.triangles / 8);
   for (const [name, values] of Object.entries(arrays)) if (/^s\d+\.(touched|close|positive)$/.test(name)) undoDifferences(values, rowBytes);
   arrays.places = decodePlaces(arrays.positions, clip.frames, clip.vertices);
   arrays.ends = decodePlaces(arrays.predicted_ends, arrays.interval_of_end.length, clip.vertices);
-  return recordingOf(header, arrays);
+  return { header, arrays, laterArray };
 }
 
 // Returns everything that the page shows. Lengths are scaled so that the clip's box has a longest side of 1, centred at the

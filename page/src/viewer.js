@@ -273,6 +273,17 @@ export class Viewer {
   }
 }
 
+// Says in the viewer's place why a recording cannot be shown.
+export function fail(error) {
+  document.body.classList.add("failed");
+  byId("verdict").textContent = "This page cannot be shown.";
+  byId("details").textContent = error instanceof RangeError
+    ? "The recording is larger than this browser can hold; write it again with fewer frames: cscd view INPUT --frames A:B"
+    : error instanceof SyntaxError ? "The page is damaged. Write it again with cscd view."
+    : String(error.message || error);
+  console.warn(error);
+}
+
 // Throws where the browser lacks what a viewer needs.
 export function requireBrowser() {
   if (!document.createElement("canvas").getContext("webgl2")) throw new Error("This browser has no WebGL 2, which draws the surface; switch it on, or use another browser.");

@@ -44,9 +44,13 @@ export const both = (a, b, verb) => (a === b ? (a === "the surface" ? `it ${verb
 // Number and second of a frame, between frames too. A model's frames count on the file's own time line, and seconds from the
 // clip's start; what comes before the clip is negative in both.
 export function momentOf(recording, position) {
-  const { frame_number: numbers, seconds, fps, first_frame } = recording.clip;
-  const i = Math.min(recording.intervals - 1, Math.max(0, Math.floor(position))), t = position - i;
-  const between = (row) => (1 - t) * row[i] + t * row[i + 1];
+  const i = Math.min(recording.intervals - 1, Math.max(0, Math.floor(position)));
+  return momentAt(recording.clip, i, position - i);
+}
+
+// The same at the share `t` of interval i of a clip; at its last frame, which starts no interval, with t = 0.
+export function momentAt({ frame_number: numbers, seconds, fps, first_frame }, i, t) {
+  const between = (row) => (t === 0 ? row[i] : (1 - t) * row[i] + t * row[i + 1]);
   if (!seconds) return { frame: between(numbers), seconds: null };
   const second = between(seconds);
   return { frame: second * fps + (second < 0 ? 0 : first_frame), seconds: second };

@@ -22,10 +22,11 @@ export const restDepths = (mesh, { overlaps }) => overlaps.map((overlap) => ({
 }));
 
 export class Events {
-  // `rest` is what crosses at rest, and `restDepths` how deep what lies in what there.
-  constructor(surface, rest, restDepths) {
+  // `rest` is what crosses at rest, `restDepths` how deep what lies in what there, and `ignores` says of two triangles whether they are
+  // ignored; null where none are.
+  constructor(surface, rest, restDepths, ignores) {
     const { mesh } = surface;
-    Object.assign(this, { surface, mesh, rest, restDepths, all: [], vertices: new Map(), pairs: new Map(), goingOn: new Set() });
+    Object.assign(this, { surface, mesh, rest, restDepths, ignores, all: [], vertices: new Map(), pairs: new Map(), goingOn: new Set() });
   }
 
   // Which side of each curve the deepest region lies on, where vertices of it lie beside the curve. Of two sides, that of the
@@ -63,9 +64,11 @@ export class Events {
     const numbers = found.overlaps.map((overlap) => {
       const { curves, regions } = overlap, segments = segmentsOf(overlap);
       if (segments.length === 0) return undefined;
-      const explained = segments.filter(([a, b]) => rest.explains(mesh.pair(a, b))).length;
+      const left = segments.filter(([a, b]) => !this.ignores?.(a, b)), ignored = segments.length - left.length;
+      const explained = left.filter(([a, b]) => rest.explains(mesh.pair(a, b))).length;
       let atRest = null;
-      if (2 * (segments.length - explained) <= segments.length && explained > 0) {
+      if (2 * (left.length - explained) <= segments.length && ignored + explained > 0) {
+        if (2 * ignored >= segments.length) return undefined;
         atRest = this.restDepths.filter(({ near }) => segments.some(([a, b]) => near.has(a) && near.has(b))).reduce((most, { depth }) => Math.max(most, depth), 0);
         if (!(overlap.depth > DEEPER * atRest)) return undefined;
       }
@@ -138,6 +141,7 @@ export class Joints {
       this.girth.set(name, Math.min(this.girth.get(name) ?? Infinity, girthOf(own)));
       if (bone >= 0) nameOf.set(bone, name);
     }
+    if (parent.length === 1) return;  // one node moves the whole surface, and has no joint
     for (const [bone, name] of nameOf) {
       join(name, name);
       if (nameOf.has(parent[bone])) join(name, nameOf.get(parent[bone]));

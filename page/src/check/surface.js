@@ -1,11 +1,12 @@
 // The surface of a model: all its parts, welded; the names of its places; and what crosses in it at rest.
-import { Joints, restDepths } from "./events.js";
-import { Mesh, RestCrossings, tellApart } from "./mesh.js";
+import { many, number } from "../words.js";
+import { Joints } from "./events.js";
+import { Mesh } from "./mesh.js";
+import { POINT, PreparedSurface } from "./prepared.js";
 import { weld, weldedTriangles } from "./weld.js";
 
 const PROBES = 32;  // poses in which seams are looked at, spread over all clips
-const MOST_AT_REST = 500000;
-const POINT = "a point";  // a vertex of no face, for which no triangle stands
+const ordinal = (n) => n + (n % 100 >= 11 && n % 100 <= 13 ? "th" : ["th", "st", "nd", "rd"][n % 10] ?? "th");
 
 function rawCorners({ parts }) {
   const corners = [], part = [];
@@ -28,8 +29,9 @@ function probesOf(model) {
   }));
 }
 
-export class Surface {
+export class Surface extends PreparedSurface {
   constructor(model, name) {
+    super();
     const raw = rawCorners(model), positions = new Float64Array(3 * model.vertexCount);
     Object.assign(this, { model, name, clips: model.clips, fps: model.fps, isSequence: model.isSequence === true });
     this.header = { import: { format: model.format, centimetres_per_unit: model.centimetres || null, fps: model.fps, fps_from: model.fpsFrom } };
@@ -68,6 +70,30 @@ export class Surface {
   sample(clip, frame, out) {
     this.model.sample(clip.number < 0 ? null : clip, frame, this.raw);
     return this.chosen(out);
+  }
+
+  pose(clip, frame) { return this.sample(clip, Math.min(frame, clip.frames - 1), new Float64Array(3 * this.mesh.vertices)); }
+
+  // The poses at both ends of an interval; `last` is the end of the one before.
+  startOf(clip, interval, last) { return last ?? this.pose(clip, interval); }
+  endOf(clip, interval) { return this.pose(clip, interval + 1); }
+
+  // A file of one pose is asked about as it is: what crosses in it is not left out.
+  keepsRest(clip) { return clip.frames < 2 && this.clips.every(({ frames }) => frames < 2); }
+
+  // What a verdict on a clip is about.
+  subjectOf({ frames, name, number }) {
+    const { clips } = this;
+    if (!frames || this.isSequence || clips.length === 0 || number < 0) return this.name;
+    const title = name ? `clip '${name}'` : "clip";
+    return `${this.name}, ${clips.length === 1 ? (name ? `${title} (the only one)` : "its only clip") : `${title} (${ordinal(number + 1)} of ${many(clips.length, "clip")})`}`;
+  }
+
+  // How it was answered, in sentences.
+  notes() {
+    const { fps, fpsFrom } = this.model;
+    return [`${number(fps)} frames a second, ${{ file: "as the file says", keys: "as the keys of the file are spaced", assumed: "because the file does not say" }[fpsFrom]}`,
+      "Posed by three.js and answered in this page by cscd's library, every answer proven for straight lines between these frames"];
   }
 
   // A part is called as its node; two of one name, and the components of one part, are told apart by number.
@@ -148,16 +174,5 @@ export class Surface {
   // Where the head and the tail of each bone are in the pose that was sampled last.
   bonesNow() {
     return this.bones.flatMap(({ matrixWorld: { elements: m } }, b) => [m[12], m[13], m[14], ...[0, 1, 2].map((k) => m[k] * this.tails[b][0] + m[4 + k] * this.tails[b][1] + m[8 + k] * this.tails[b][2] + m[12 + k])]);
-  }
-
-  // Prepares the library for the surface, and finds what crosses at rest.
-  prepare(SelfCollision) {
-    const { mesh, rest } = this;
-    this.body = new SelfCollision(mesh.corners, rest);
-    const pairs = this.body.allContacts(rest, rest).startCrossings, met = [];
-    for (let i = 0; i < pairs.length; i += 2) met.push(mesh.pair(pairs[i], pairs[i + 1]));
-    if (met.length > MOST_AT_REST) throw new Error(`has ${met.length} pairs of triangles that cross at rest, too many to leave out; repair the surface`);
-    const found = met.length > 0 ? this.body.crossings(rest) : { overlaps: [] };
-    this.atRest = { met, depths: restDepths(mesh, found), rest: new RestCrossings(mesh, Array.from(tellApart(mesh, rest, met, found)), met) };
   }
 }

@@ -1,14 +1,13 @@
 // Reads, poses and answers beside the page, which stays free. Takes {files, engine} once, and posts {kind}: "read", "frames" and
 // "answer" of each clip, "progress" in between, and at last "done" or "refused".
 import init, { SelfCollision } from "cscd";
-import { ClipAnswer } from "./answer.js";
+import { answerClip } from "./answer.js";
 import { readModel } from "./model.js";
+import { post, teller } from "./post.js";
 import { Surface } from "./surface.js";
 
 const MOST_BYTES = 400 * 2 ** 20;  // of positions on the grid, which the page holds
 const PLACES = 65535;
-
-const post = (kind, message, arrays = {}) => postMessage({ kind, ...message, arrays }, Array.from(new Set(Object.values(arrays).map(({ buffer }) => buffer))));
 
 // All frames of a clip as places on a grid, [frames][3][vertices], with bones; and how the viewer reads them.
 function framesOf(surface, clip) {
@@ -31,25 +30,12 @@ function framesOf(surface, clip) {
   }
   const seconds = Array.from({ length: frames }, (_, f) => (clip.frames < 2 ? 0 : clip.second(f)));
   return {
-    clip: {
+    shown: {
       frames, first_interval: 0, all_intervals: frames - 1, vertices: n, triangles: mesh.triangles, bones: surface.bones.length, fps, first_frame: clip.firstFrame,
       frame_number: seconds.map((s) => s * fps + clip.firstFrame), seconds, grid: { origin: low, step },
     },
     arrays: { places, ends: new Uint16Array(0), interval_of_end: new Uint32Array(0), bones, corners: mesh.corners.slice(), place: surface.place.slice(), part: surface.part.slice() },
   };
-}
-
-function answerOf(surface, clip, tell) {
-  const answer = new ClipAnswer(surface, clip), n = 3 * surface.mesh.vertices;
-  let start = surface.sample(clip, 0, new Float64Array(n)), end = new Float64Array(n);
-  for (let f = 0; f < answer.count; ++f) {
-    surface.sample(clip, Math.min(f + 1, clip.frames - 1), end);
-    answer.add(start, end);
-    [start, end] = [end, start];
-    tell(f + 1);
-  }
-  if (!answer.isPose) answer.end(start);
-  return answer.finish();
 }
 
 async function check({ files, engine }) {
@@ -63,20 +49,17 @@ async function check({ files, engine }) {
     header: { schema: "cscd.view/1", name, kind: "model", up: { axis: model.up, because: model.because }, engine_colours: false, thickness: "", texts: surface.texts, true_motion: null, notes: model.notes.map((note) => `${note}.`).join(" "), ...surface.header },
     clips: clips.map(title), intervals: clips.reduce((sum, clip) => sum + Math.max(1, clip.frames - 1), 0),
   });
-  let done = 0, told = 0;
+  const tell = teller();
+  let done = 0;
   for (const [number, clip] of clips.entries()) {
-    const { arrays, ...shown } = framesOf(surface, clip);
-    post("frames", { number, ...shown }, arrays);
+    const { arrays, shown } = framesOf(surface, clip);
+    clip.shown = shown;
+    post("frames", { number, clip: shown }, arrays);
     if (!surface.body) {
       await loading;
       surface.prepare(SelfCollision);
     }
-    const { arrays: answers, ...said } = answerOf(surface, clip, (interval) => {
-      ++done;
-      if (performance.now() - told < 50) return;
-      told = performance.now();
-      post("progress", { number, interval, done });
-    });
+    const { arrays: answers, ...said } = answerClip(surface, clip, {}, (interval) => tell({ number, interval, done: ++done }));
     post("answer", { number, ...said }, answers);
   }
   post("done", {});
