@@ -1,8 +1,9 @@
 // Bundles the viewer and the report into one HTML page each, whose content policy allows its own script and style alone, and
-// writes both as a C++ source. With the package of library/js, writes the page that takes a file instead.
+// writes both as a C++ source. With the package of library/js, writes the two pages that hold the engine instead: the page that takes a
+// file (check), or the viewer of `cscd view --with-engine` (again).
 //
 //   node build.mjs FOLDER-WITH-node_modules OUT.cpp
-//   node build.mjs FOLDER-WITH-node_modules OUT.html PACKAGE
+//   node build.mjs FOLDER-WITH-node_modules OUT.html PACKAGE check|again
 import { createHash } from "node:crypto";
 import { createRequire } from "node:module";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -11,7 +12,7 @@ import { fileURLToPath } from "node:url";
 import { deflateSync } from "node:zlib";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [packages, out, library] = process.argv.slice(2);
+const [packages, out, library, kind] = process.argv.slice(2);
 const { build } = createRequire(join(packages, "package.json"))("esbuild");
 
 async function bundle(entry) {
@@ -37,8 +38,9 @@ const digest = (text) => `'sha256-${createHash("sha256").update(text).digest("ba
 const version = (name) => JSON.parse(readFileSync(join(packages, "node_modules", name, "package.json"), "utf8"));
 const licence = (name) => `${name} ${version(name).version} (${version(name).license} licence)`;
 
-// `allowed` says what the page may do beside running its own script; `held` what it holds in places of its own.
-async function pageOf(name, entry, licensed, { scripts = "", allowed = "", held = {} } = {}) {
+// `allowed` says what the page may do beside running its own script; `held` what it holds in places of its own; `command` which command
+// makes such pages.
+async function pageOf(name, entry, licensed, { scripts = "", allowed = "", held = {}, command = name } = {}) {
   const script = (await bundle(entry)).replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
   const style = await bundle(`${name}.css`);
   const policy = `default-src 'none'; script-src ${digest(script)}${scripts}; style-src ${digest(style)}; ${allowed}base-uri 'none'; form-action 'none'`;
@@ -46,7 +48,7 @@ async function pageOf(name, entry, licensed, { scripts = "", allowed = "", held 
   const whole = Object.entries(held).reduce((text, [place, value]) => text.replace(`{{${place}}}`, () => value), part(`${name}.html`));
   return whole
     .replace("{{head}}", () => part("head.html").trim())
-    .replaceAll("{{name}}", () => name)
+    .replaceAll("{{name}}", () => command)
     .replace("{{policy}}", () => policy)
     .replace("{{licences}}", () => licence(licensed))
     .replace("{{style}}", () => style)
@@ -69,15 +71,15 @@ ${literal(page)};
 
 const packed = (bytes) => deflateSync(bytes, { level: 9 }).toString("base64");
 
-// The page that takes a file holds the viewer's elements, the engine, and the script of its worker.
-async function checkPage() {
+// A page with an engine holds the viewer's elements, the engine, and the script of the worker that asks it.
+async function pageWithEngine(name, command) {
   const view = /<header>.*<\/footer>/s.exec(readFileSync(join(here, "src/view.html"), "utf8"))[0];
-  const held = { view, engine: packed(readFileSync(join(library, "cscd.wasm"))), worker: packed(await bundle("check/worker.js")) };
-  return pageOf("check", "check.js", "three", { scripts: " 'wasm-unsafe-eval'", allowed: "worker-src blob:; ", held });
+  const held = { view, engine: packed(readFileSync(join(library, "cscd.wasm"))), worker: packed(await bundle(`${name}/worker.js`)) };
+  return pageOf(name, `${name}.js`, "three", { command, scripts: " 'wasm-unsafe-eval'", allowed: "worker-src blob:; ", held });
 }
 
 if (library) {
-  writeFileSync(out, await checkPage());
+  writeFileSync(out, await pageWithEngine(kind, kind === "again" ? "view" : kind));
 } else {
   writeFileSync(
     out,

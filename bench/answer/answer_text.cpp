@@ -51,20 +51,6 @@ std::string ignored_text(const Input& input, const AnswerSummary& s) {
          many(pairs, "crossing pair") + " of triangles in " + many(s.with_ignored, "interval") + asked;
 }
 
-// "horse.glb, clip 'Walk' (14th of 14 clips), component 2 of 5 alone": what exactly a verdict is about.
-std::string subject_of(const Input& input) {
-  const std::string name = short_name(input.name);
-  if (!input.import) return name;
-  const scenes::ImportReport& report = *input.import;
-  std::string rest;
-  if (const std::string clip = clip_title(report); !clip.empty()) rest += ", " + clip;
-  if (const std::size_t chosen = report.chosen_components.size(); chosen < report.components)
-    rest += (chosen == 1 ? ", component " + std::to_string(report.chosen_components[0])
-                         : ", " + std::to_string(chosen) + " components") +
-            " of " + std::to_string(report.components) + " alone";
-  return name + rest + (rest.empty() ? "" : ",");
-}
-
 std::string of_intervals(std::size_t count, const AnswerSummary& s) {
   return std::to_string(count) + " of " + many(s.intervals(), "interval");
 }
@@ -347,6 +333,19 @@ Sentences sentences(const ClipAnswer& answer) {
 
 }  // namespace
 
+std::string subject_text(const Input& input) {
+  const std::string name = short_name(input.name);
+  if (!input.import) return name;
+  const scenes::ImportReport& report = *input.import;
+  std::string rest;
+  if (const std::string clip = clip_title(report); !clip.empty()) rest += ", " + clip;
+  if (const std::size_t chosen = report.chosen_components.size(); chosen < report.components)
+    rest += (chosen == 1 ? ", component " + std::to_string(report.chosen_components[0])
+                         : ", " + std::to_string(chosen) + " components") +
+            " of " + std::to_string(report.components) + " alone";
+  return name + rest;
+}
+
 std::vector<std::string> verdict_exceptions(const ClipAnswer& answer) {
   const AnswerSummary& s = answer.summary;
   std::vector<std::string> out;
@@ -399,10 +398,9 @@ std::vector<std::string> verdict_sentences(const ClipAnswer& answer) {
       answer.input.motion
           ? true_predicate(answer.input, answer.true_motion, frames_text(answer), exceptions_text(answer))
           : verdict_predicate(answer);
-  std::string subject = subject_of(answer.input);
+  const std::string subject = subject_text(answer.input);
   const std::optional<std::size_t> worst = worst_event(answer);
-  if (!worst) return {subject + " " + predicate + "."};
-  if (subject.ends_with(',')) subject.pop_back();
+  if (!worst) return {subject + (subject == short_name(answer.input.name) ? " " : ", ") + predicate + "."};
   std::vector<std::string> out{subject + ": " + worst_text(answer.input, answer.events[*worst]) + "."};
   if (const std::string touching = only_touching_text(answer); !touching.empty()) out.push_back(touching);
   out.push_back("It " + predicate + ".");

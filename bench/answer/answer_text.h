@@ -8,6 +8,9 @@
 // Answers as text.
 namespace cscd::bench {
 
+// "horse.glb, clip 'Walk' (14th of 14 clips), component 2 of 5 alone": what exactly a verdict is about.
+std::string subject_text(const Input& input);
+
 // Says what was asked about and, in this order, what lies deepest in the surface, what only touches, how
 // often it touches or crosses itself, and when first: one to three sentences. Texts, pages and JSON all show
 // these.

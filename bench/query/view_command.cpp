@@ -16,9 +16,11 @@
 #include "bench/inputs/input.h"
 #include "bench/output/output.h"
 #include "bench/query/view/clip_recording.h"
+#include "bench/query/view/engine_recording.h"
 #include "bench/query/view/html.h"
 #include "bench/query/view/overlap_recording.h"
 #include "bench/query/view/recording.h"
+#include "bench/query/view/viewer_page.h"
 #include "bench/query/view_page.h"
 #include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
@@ -65,6 +67,11 @@ json true_moment(const Input& input, const SurfaceNames& names, const IntervalAn
   return out;
 }
 
+// What require_page_room() adds for the positions that the page's engine answers.
+std::size_t engine_bytes(const ViewRequest& options, const Input& input) {
+  return options.with_engine ? EngineRecording::page_bytes(input.clip->header().predicted) : 0;
+}
+
 // Answers one clip, adds its arrays to `sections`, and returns what a page has to know of it.
 json record_clip(const ViewRequest& options, Input opened, Sections& sections) {
   ClipAnswerer asked(options, std::move(opened));
@@ -76,7 +83,8 @@ json record_clip(const ViewRequest& options, Input opened, Sections& sections) {
   sections.add("place", places);
   sections.add("part", parts);
 
-  ClipRecording clip(input, asked.range());
+  ClipRecording clip(input, asked.range(), engine_bytes(options, input));
+  EngineRecording engine(asked.answers().front());
   std::vector<StrategyRecording> recordings;
   for (const ClipAnswer& answer : asked.answers()) recordings.emplace_back(answer, clip.grid());
   OverlapRecording overlaps;
@@ -90,6 +98,11 @@ json record_clip(const ViewRequest& options, Input opened, Sections& sections) {
   };
   asked.answer_all("view " + options.input, true, [&](const AnsweredPose& pose) {
     clip.add_frame(pose.interval);
+    if (options.with_engine) {
+      const bool is_predicted = input.clip->header().predicted && !pose.is_last();
+      engine.add(pose.interval.motion.start(),
+                 is_predicted ? pose.interval.motion.end() : std::span<const Vec3>());
+    }
     if (pose.is_last()) return;
     overlaps.add(pose.here, pose.interval.motion.start());
     for (std::size_t s = 0; s < recordings.size(); ++s)
@@ -116,6 +129,7 @@ json record_clip(const ViewRequest& options, Input opened, Sections& sections) {
                  {"rest", rest_json(first)},
                  {"strategies", std::move(rows)}};
   if (input.import) header["import"] = import_json(*input.import);
+  if (options.with_engine) header["engine"] = engine.write(sections, options);
   return header;
 }
 
@@ -135,7 +149,7 @@ void record_all_clips(const ViewRequest& options, json& header, Sections& sectio
   const std::vector<scenes::ImportReport::Clip> clips = survey.import->clips;
   std::size_t frames = 0;
   for (const scenes::ImportReport::Clip& clip : clips) frames += clip.frames;
-  require_page_room(frames, survey.mesh.vertex_count(),
+  require_page_room(frames, survey.mesh.vertex_count(), engine_bytes(options, survey),
                     options.input + ": a page of all " + std::to_string(clips.size()) + " clips,",
                     "by naming one clip with --clip");
   header["clips"] = json::array();
@@ -163,6 +177,8 @@ void record_all_clips(const ViewRequest& options, json& header, Sections& sectio
 std::string view_page(ViewRequest options) {
   require_viewer();
   require_sound(options);
+  if (options.with_engine) require_page_answers(options);
+  const std::string with_engine = options.with_engine ? engine_page() : std::string();
   if (options.strategies.size() > kMostStrategies)
     throw InputError("--strategy: a page compares up to " + std::to_string(kMostStrategies) +
                      " strategies; name fewer");
@@ -184,7 +200,7 @@ std::string view_page(ViewRequest options) {
     name_input(options.input, [&] { header.update(record_clip(options, std::move(input), sections)); });
     std::printf("%s", text_of(header).c_str());
   }
-  return viewer_with(header, sections);
+  return viewer_with(options.with_engine ? with_engine : viewer_page(), header, sections);
 }
 
 namespace {
@@ -221,6 +237,9 @@ void add_view(CLI::App& app) {
        .choices = {scenes::kUpAxes.begin(), scenes::kUpAxes.end()}},
       {"-o,--out", &ViewOptions::output,
        "the .html file to write; default the input's name with that extension, here"},
+      {"--with-engine", &ViewOptions::with_engine,
+       "the page holds the engine, too, and answers again with another thickness or with pairs "
+       "ignored;\n`scripts/check wasm` makes what that needs"},
       {"--force", &ViewOptions::force, "replace the output even if it is no page that cscd view wrote"}};
   add_options<ViewOptions>(*command, rows, *options);
   command->callback([options] {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -158,6 +159,51 @@ TEST_F(View, IgnoresWhatItIsToldTo) {
   EXPECT_NE(row["details"].get<std::string>().find("(--ignore-neighbours 1)"), std::string::npos)
       << row["details"];
   EXPECT_NE(row["details"].get<std::string>().find(". Answered by "), std::string::npos) << row["details"];
+}
+
+// The page with the engine is a file beside the program, in its build folder or in the prefix that it is
+// installed to. Where there is none, the option is refused.
+TEST_F(View, PutsTheEngineIntoAPage) {
+  constexpr char kCopy[] = R"sh(mkdir -p prefix/bin; cp -l "$(command -v cscd)"{,-*} prefix/bin 2>/dev/null ||
+cp "$(command -v cscd)"{,-*} prefix/bin; PATH=$PWD/prefix/bin:$PATH
+)sh";
+  const auto view = [&](const std::string& words) { return run(kCopy + ("cscd view " + words)); };
+  expect_refused(view("small --with-engine -o page.html"), "scripts/check wasm BUILD");
+  EXPECT_FALSE(fs::exists(folder / "page.html"));
+  for (const char* place : {"prefix/share/cscd", "prefix/bin/share/cscd"}) {
+    fs::create_directories(folder / place);
+    put(std::string(place) + "/engine_view.html", "<!doctype html>the engine<!--data-->");
+    const Ran ran = view("small --with-engine --thickness 0.1e -o page.html --force");
+    ASSERT_EQ(ran.status, 0) << ran.errors;
+    const std::string page = text("page.html");
+    EXPECT_EQ(page.find("<!doctype html>the engine<script"), 0u);
+    const json header = header_of(page), &engine = header["engine"];
+    EXPECT_EQ(engine["subject"], "small");
+    EXPECT_EQ(engine["asked"], (json{{"thickness", "0.1e"}, {"neighbours", nullptr}}));
+    EXPECT_GT(engine["mean_edge"], 0);
+    std::map<std::string, std::size_t> bytes;
+    for (const json& section : header["sections"]) bytes[section["name"]] = section["raw"];
+    const std::size_t frames = header["clip"]["frames"], pose = 24 * header["clip"]["vertices"].get<int>();
+    EXPECT_EQ(bytes["exact.rest"], pose);
+    EXPECT_EQ(bytes["exact.starts"], frames * pose);
+    EXPECT_EQ(bytes["exact.ends"], 0u);  // intervals end where the next ones start
+    EXPECT_EQ(bytes["exact.place_number"], 4 * header["clip"]["triangles"].get<std::size_t>());
+    fs::remove_all(folder / place);
+  }
+  // A file of another kind is no page.
+  fs::create_directories(folder / "prefix/share/cscd");
+  put("prefix/share/cscd/engine_view.html", "<!doctype html>");
+  expect_refused(view("small --with-engine -o -"), "scripts/check wasm BUILD");
+}
+
+TEST_F(View, RefusesToAskAPagesEngineWhatItDoesNotKnow) {
+  for (const char* words : {"--true-motion", "--first", "--new-contacts", "--ignore bone_0:bone_1",
+                            "--exclude-rings 1", "--exclude-near-rest 0.1"}) {
+    const std::string option = std::string(words).substr(0, std::string(words).find(' '));
+    expect_refused(run(std::string("cscd view figure.glb --with-engine ") + words),
+                   "--with-engine with " + option + ":");
+  }
+  EXPECT_EQ(files(), "figure.glb");
 }
 
 TEST_F(View, RefusesWhatItCannotShow) {

@@ -17,18 +17,19 @@ constexpr double kScenesFps = 30;  // at which clips that tell no rate are playe
 
 }  // namespace
 
-void require_page_room(std::size_t frames, std::size_t vertices, const std::string& what,
-                       const std::string& remedy) {
-  const std::size_t most = kMostBytes / (6 * vertices);
+void require_page_room(std::size_t frames, std::size_t vertices, std::size_t more_bytes,
+                       const std::string& what, const std::string& remedy) {
+  const std::size_t most = kMostBytes / ((6 + more_bytes) * vertices);
   if (frames > most)
     throw InputError(what + " of " + std::to_string(frames) + " frames of " + std::to_string(vertices) +
                      " vertices is more than a browser opens; choose up to " + std::to_string(most) +
                      " frames " + remedy);
 }
 
-ClipRecording::ClipRecording(const Input& input, const IntervalRange& range) : input_(input), range_(range) {
-  require_page_room(range.last - range.first + 1, input.mesh.vertex_count(), input.name + ": a page",
-                    "with --frames A:B");
+ClipRecording::ClipRecording(const Input& input, const IntervalRange& range, std::size_t more_bytes)
+    : input_(input), range_(range) {
+  require_page_room(range.last - range.first + 1, input.mesh.vertex_count(), more_bytes,
+                    input.name + ": a page", "with --frames A:B");
   for (std::size_t f = range.first; f <= range.last; ++f) {
     grid_.include(input.clip->load_frame(f).positions);
     if (input.clip->header().predicted && f < range.last) grid_.include(input.clip->load(f).motion.end());

@@ -12,17 +12,16 @@
 namespace cscd::bench {
 
 // Throws InputError if a page of so many frames would be too large for a browser. `what` begins the error,
-// and `remedy` ends it.
-void require_page_room(std::size_t frames, std::size_t vertices, const std::string& what,
-                       const std::string& remedy);
+// and `remedy` ends it. `more_bytes` are those of a vertex of a frame beside its place on the grid.
+void require_page_room(std::size_t frames, std::size_t vertices, std::size_t more_bytes,
+                       const std::string& what, const std::string& remedy);
 
 // Collects the moving surface for a page: positions on a grid, bones, and the ends of intervals that lead to
 // a prediction instead of the next frame.
 class ClipRecording {
  public:
-  // Reads all frames of the range once, for the size of the grid. Throws InputError if a page of so many
-  // frames would be too large for a browser.
-  ClipRecording(const Input& input, const IntervalRange& range);
+  // Reads all frames of the range once, for the size of the grid. Throws as require_page_room() does.
+  ClipRecording(const Input& input, const IntervalRange& range, std::size_t more_bytes = 0);
 
   const ViewGrid& grid() const { return grid_; }
 

@@ -25,7 +25,6 @@ std::string header_element(const nlohmann::json& value) {
 }
 
 std::string with_data(std::string_view page, const std::string& data) {
-  require_viewer();
   const std::size_t place = page.find(kDataPlace);
   if (place == std::string_view::npos) throw std::logic_error("a page has no place for data");
   return std::string(page.substr(0, place)) + data + std::string(page.substr(place + kDataPlace.size()));
@@ -40,12 +39,12 @@ void require_viewer() {
         "-DCSCD_VIEWER=ON");
 }
 
-std::string viewer_with(const nlohmann::json& header, const Sections& sections) {
+std::string viewer_with(std::string_view page, const nlohmann::json& header, const Sections& sections) {
   nlohmann::json whole = header;
   whole["sections"] = sections.table();
-  return with_data(viewer_page(), header_element(whole) +
-                                      "\n<script type=\"application/octet-stream\" id=\"arrays\">" +
-                                      base64(sections.bytes()) + "</script>");
+  return with_data(page, header_element(whole) +
+                             "\n<script type=\"application/octet-stream\" id=\"arrays\">" +
+                             base64(sections.bytes()) + "</script>");
 }
 
 bool is_page_of_viewer(const std::filesystem::path& path) {
@@ -59,6 +58,7 @@ bool is_page_of_viewer(const std::filesystem::path& path) {
 }
 
 std::string report_with(const nlohmann::json& document) {
+  require_viewer();
   return with_data(report_page(), header_element(document));
 }
 

@@ -3,14 +3,14 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "bench/query/view/sections.h"
 
 namespace cscd::bench {
 
-// Puts data into the viewer's page: `header`, which any text may stand in, and arrays of numbers. Throws
-// InputError if the program was built without the viewer.
-std::string viewer_with(const nlohmann::json& header, const Sections& sections);
+// Puts data into a page of the viewer: `header`, which any text may stand in, and arrays of numbers.
+std::string viewer_with(std::string_view page, const nlohmann::json& header, const Sections& sections);
 
 // Whether a page of the viewer stands there, which names the viewer in its head. Such a page can be made
 // again.

@@ -140,7 +140,7 @@ TEST(Html, NoTextLeavesItsElement) {
   if (viewer_page().empty()) GTEST_SKIP() << "built without the viewer";
   Sections sections;
   const std::string hostile = "</script><img src=x onerror=alert(1)><!-- \xff";
-  const std::string page = viewer_with({{"name", hostile}}, sections);
+  const std::string page = viewer_with(viewer_page(), {{"name", hostile}}, sections);
   EXPECT_EQ(page.find("<img"), std::string::npos);
   const std::string begin = "id=\"header\">";
   const std::size_t from = page.find(begin) + begin.size(), to = page.find("</script>", from);

@@ -1,6 +1,6 @@
 #!/bin/bash
 # Builds the npm package of library/js for WebAssembly, and the page that takes a file (build-wasm/check.html), and tests both in
-# Node and in Chromium.
+# Node and in Chromium. With BUILD, `cscd view --with-engine` of BUILD gets its page, BUILD/share/cscd/engine_view.html, too.
 #
 #   scripts/check wasm [BUILD [--all]]
 #
@@ -48,13 +48,28 @@ node "$root/library/js/test/check_page.mjs" "$packages" "$package" || status=$?
 [ $status -eq 0 ] || [ $status -eq 77 ] || exit 1  # 77: there is no Chromium
 
 say "the page that takes a file"
-node "$root/page/build.mjs" "$packages" "$build/check.html" "$package"
+node "$root/page/build.mjs" "$packages" "$build/check.html" "$package" check
 size=$(stat -c %s "$build/check.html")
 echo "$build/check.html: $size bytes"
 [ "$size" -le 3000000 ] || die "the page is larger than 3 MB"
 [ -n "$native" ] || exit 0
 status=0
 node "$root/page/test/check_file.mjs" "$packages" "$build/check.html" "$native/cscd" "${CSCD_MODELS:-$root/../shared/models}" || status=$?
+[ $status -eq 0 ] || [ $status -eq 77 ] || exit 1
+
+say "the viewer with the engine"
+page=$native/share/cscd/engine_view.html
+mkdir -p "${page%/*}"
+node "$root/page/build.mjs" "$packages" "$page.part" "$package" again
+mv "$page.part" "$page"
+echo "$page: $(stat -c %s "$page") bytes"
+inputs=("hand_contact --frames 40:70")
+models=${CSCD_MODELS:-$root/../shared/models}
+for input in "horse.glb --clip Walk" "shiba_inu.glb --clip AnimalArmature|Eating" cesium_man.glb; do
+  [ ! -e "$models/${input%% *}" ] || inputs+=("$models/$input")
+done
+status=0
+node "$root/page/test/check_again.mjs" "$packages" "$native/cscd" "${inputs[@]}" || status=$?
 [ $status -eq 0 ] || [ $status -eq 77 ] || exit 1
 
 say "answers of the package and of $native"
