@@ -82,11 +82,12 @@ export class Captions {
     byId("legend").replaceChildren(...rows);
   }
 
-  // The colours of depths from 0 to the deepest one, with numbers.
+  // The colours of depths from 0 to the one that the verdict names, with numbers. Deeper places, such as at a joint, have its colour.
   depthScale() {
     const scale = element("span", undefined, "scale"), bar = element("i"), most = mostDepth(this.recording);
+    const text = lengthText(this.recording, most), deeper = this.recording.insideDepth.some((depth) => depth > most && lengthText(this.recording, depth) !== text);
     bar.style.background = `linear-gradient(to right, ${YELLOW}, ${RED})`;
-    scale.append(bar, ...[0, 0.5, 1].map((share) => element("b", lengthText(this.recording, share * most))));
+    scale.append(bar, ...[lengthText(this.recording, 0), lengthText(this.recording, most / 2), (deeper ? "\u2265 " : "") + text].map((number) => element("b", number)));
     return scale;
   }
 

@@ -246,13 +246,14 @@ try {
     require((await page.evaluate(() => window.cscd.position)) === events[Math.min(10, events.length) - 1], "an event does not lead to its deepest frame");
     const deep = await look();
     await picture("event");
-    // The legend says how deep its colours are, up to the deepest vertex of the clip.
+    // The legend says how deep its colours are, up to the depth that the verdict names, and whether any vertex of the clip is deeper.
     const scale = await page.evaluate(() => {
-      const { recording } = window.cscd, cm = recording.header.import?.centimetres_per_unit ?? 0, numbers = Array.from(document.querySelectorAll("#legend .scale b"), (b) => b.textContent);
-      const factor = { m: 100, cm: 1, mm: 0.1 }[numbers.at(-1)?.split(" ")[1]];
-      return { numbers, last: parseFloat(numbers.at(-1)?.replaceAll(",", "")) * (factor ?? 1), most: recording.insideDepth.reduce((a, b) => Math.max(a, b), 0) * (cm || 1), unit: (cm > 0) === (factor !== undefined) };
+      const { recording } = window.cscd, named = recording.strategies[0].summary.headline?.depth.at_least, cm = recording.header.import?.centimetres_per_unit ?? 0, numbers = Array.from(document.querySelectorAll("#legend .scale b"), (b) => b.textContent);
+      const last = numbers.at(-1)?.replace("\u2265 ", ""), factor = { m: 100, cm: 1, mm: 0.1 }[last?.split(" ")[1]];
+      const deepest = recording.insideDepth.reduce((a, b) => Math.max(a, b), 0), most = named || deepest, marked = numbers.at(-1)?.startsWith("\u2265");
+      return { numbers, last: parseFloat(last?.replaceAll(",", "")) * (factor ?? 1), most: most * (cm || 1), marked: deepest > 1.01 * most ? marked : deepest > most || !marked, unit: (cm > 0) === (factor !== undefined) };
     });
-    require(scale.numbers[0] === "0" && scale.numbers.length === 3 && Math.abs(scale.last - scale.most) <= 0.006 * scale.most && (scale.unit || scale.most === 0), `the depths' scale says ${JSON.stringify(scale)}`);
+    require(scale.numbers[0] === "0" && scale.numbers.length === 3 && Math.abs(scale.last - scale.most) <= 0.006 * scale.most && scale.marked && (scale.unit || scale.most === 0), `the depths' scale says ${JSON.stringify(scale)}`);
     // Its curves are drawn, closed or not, and those of other events with them. The last pose starts no interval and has none.
     const curves = await page.evaluate(() => {
       const { recording, chosen, stage } = window.cscd, { curveOffset, pointOffset, curveEvent } = recording, interval = window.cscd.interval();
