@@ -5,7 +5,7 @@ import { loadRecording, recordingOf } from "./data.js";
 import { byId, element } from "./dom.js";
 import { Engine, showRecording, TOOK_LONG } from "./engine.js";
 import { namesOf } from "./moments.js";
-import { both } from "./words.js";
+import { both, many } from "./words.js";
 import { fail, requireBrowser } from "./viewer.js";
 
 class Again {
@@ -13,7 +13,7 @@ class Again {
     Object.assign(this, { header, arrays, laterArray, engine: new Engine(), pairs: [] });
     const { thickness, neighbours } = header.engine.asked;
     byId("thickness").value = thickness;
-    byId("neighbours").append(...Array.from({ length: Math.max(4, neighbours ?? 0) + 1 }, (_, joints) => element("option", String(joints))));
+    byId("neighbours").append(...Array.from({ length: Math.max(4, neighbours ?? 0) + 1 }, (_, joints) => Object.assign(element("option", `up to ${many(joints, "joint")} apart`), { value: joints })));
     byId("neighbours").value = String(neighbours ?? "");
     byId("neighbours-label").hidden = header.engine.bone_parent.length === 0;
     byId("again").addEventListener("submit", (event) => {

@@ -213,7 +213,7 @@ def show(scene):
         row.frame, row.point = math.floor(event.deepest + 0.005), event.point
         if event.lines and (event.depth > 0 or event.touches):
             row.out = event.lines[-1][1] - event.lines[-1][0]
-        row.reach = max(8 * event.depth, 0.15 * size)
+        row.reach = max(8 * event.depth, 0.3 * size)
     if shown:
         collection = bpy.data.collections.new(NAME)
         collection[OURS] = True
@@ -376,6 +376,7 @@ class Check(bpy.types.Operator):
             self.report({"WARNING"}, why)
         else:
             show(context.scene)
+            context.scene.cscd_self_collision.active = 0  # goes to the deepest, as a click on its row does
         redraw(context)
         return {"CANCELLED"} if why else {"FINISHED"}
 
