@@ -188,9 +188,10 @@ class Runner:
         self.times = json.loads(self.times_file.read_text()) if self.times_file.exists() else {}
 
     def targets(self, file):
-        """Test programs for a file: of its room first, then of rooms above it, bottom-up."""
+        """Test programs for a file: of its room first, then of rooms above it, bottom-up. A reader's tests are in the room above."""
         own = file.rpartition("/")[0]
-        return test_programs([own], "") + test_programs(above(self.rooms, own))
+        higher = above(self.rooms, own)
+        return test_programs([own], "") + (test_programs(higher, "scenes/") if own.startswith("scenes/") else test_programs(higher))
 
     def filters(self, target):
         quick = [name for name, seconds in self.times[target].items()
