@@ -45,7 +45,7 @@ def records_in(folder):
 
 
 def picture(full):
-    return f"![a hand at rest, an interval in which its fingers touch, and where they do]({full.link}/contact.png)\n"
+    return f"![a hand at rest, an interval in which a finger touches itself, and where]({full.link}/contact.png)\n"
 
 
 def door(starts, full):
@@ -55,7 +55,8 @@ def door(starts, full):
         "interval. In a clip with contacts some intervals touch, and those take longer. A start that may cross itself is answered by "
         "`drvbc_fast_complete`. *Times faster* compares medians of methods that are asked the same: `drvbc_fast_all` and the others for all "
         "contacts, `drvbc_fast` and DRVBC for the first one. `cscd list mcd` explains any of these names.",
-        f"{starts.measured}; {starts.threads}; [all rows]({starts.link}/tables.md).",
+        f"{starts.measured}; {starts.threads}; [medians]({starts.link}/tables.md), "
+        "[the third row](bench/paper.md#the-price-of-a-start).",
         f"[The paper's tables, measured and published]({full.link}/tables.md); [its claims]({full.link}/claims.md)."]) + "\n"
 
 
