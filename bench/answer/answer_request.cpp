@@ -39,7 +39,8 @@ constexpr char kAnswerGroup[] = "Answers";
 
 void add_answer_options(CLI::App& command, AnswerRequest& request, bool several_strategies) {
   using A = AnswerRequest;
-  static const OptionRow<A> frames[] = {
+  static const OptionRow<A> interval[] = {
+      required<A>({"input", &A::input, kInputHelp}),
       {"--frames", &A::frames, "A:B, the intervals between frames A and B; default all"}};
   const OptionRow<A> strategies[] = {
       {.name = "--strategy",
@@ -80,8 +81,7 @@ void add_answer_options(CLI::App& command, AnswerRequest& request, bool several_
        "else none",
        {{0.01, 1e6}}},
       threads_option<A>()};
-  command.add_option("input", request.input, kInputHelp)->required();
-  add_options<A>(command, frames, request);
+  add_options<A>(command, interval, request);
   add_options<A>(command, strategies, request, kAnswerGroup);
   if (!several_strategies) command.get_option("--strategy")->expected(1);
   add_options<AnswerOptions>(command, answers, request.answers, kAnswerGroup);

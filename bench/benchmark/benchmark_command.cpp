@@ -5,6 +5,7 @@
 #include "bench/benchmark/benchmark.h"
 #include "bench/benchmark/entry.h"
 #include "bench/benchmark/judge.h"
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"
@@ -26,10 +27,9 @@ std::vector<std::string> scenes_called(const std::vector<std::string>& words) {
 }
 
 void add_make(CLI::App& benchmark) {
-  struct Options {
-    BenchmarkPlan plan;
-    std::string folder;
-    std::vector<std::string> scenes = {kAll};
+  struct Options : BenchmarkPlan {
+    std::string out;
+    std::vector<std::string> scene_words = {kAll};
     bool smoke = false;
   };
   auto options = std::make_shared<Options>();
@@ -40,37 +40,28 @@ void add_make(CLI::App& benchmark) {
       "  cscd benchmark make --out small --smoke\n"
       "  cscd benchmark make --out mine --count 200 --scene my/scene.json\n\n"
       "The same command writes the same bytes. `sha256sum -c SHA256SUMS` checks a copy.");
-  command->add_option("--out", options->folder, "the folder; it is made where it is missing")->required();
-  CLI::Option* count = command->add_option("--count", options->plan.small, "intervals of small meshes")
-                           ->capture_default_str()
-                           ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--seed", options->plan.seed, "the same seed gives the same small meshes")
-      ->capture_default_str();
-  CLI::Option* scenes =
-      command
-          ->add_option("--scene", options->scenes,
-                       "scenes, with commas between; all: every scene of cscd list; none: small meshes alone")
-          ->delimiter(',')
-          ->default_str(kAll);
-  CLI::Option* each =
-      command->add_option("--scene-intervals", options->plan.scene_intervals, "intervals of each scene")
-          ->capture_default_str()
-          ->check(CLI::Range(1, 10'000));
-  command
-      ->add_flag("--smoke", options->smoke,
-                 "seconds instead of minutes: 60 small meshes and no scenes, to show that everything works")
-      ->excludes(count)
-      ->excludes(scenes)
-      ->excludes(each);
-  command->add_flag("--force", options->plan.force, "replace a benchmark that is there");
+  using O = Options;
+  static const OptionRow<O> rows[] = {
+      required<O>({"--out", &O::out, "the folder; it is made where it is missing"}),
+      {"--count", &O::small, "intervals of small meshes", {{1, 1'000'000}}},
+      {"--seed", &O::seed, "the same seed gives the same small meshes"},
+      {"--scene", &O::scene_words,
+       "scenes, with commas between; all: every scene of cscd list; none: small meshes alone"},
+      {"--scene-intervals", &O::scene_intervals, "intervals of each scene", {{1, 10'000}}},
+      {"--smoke", &O::smoke,
+       "seconds instead of minutes: 60 small meshes and no scenes, to show that everything works"},
+      {"--force", &O::force, "replace a benchmark that is there"}};
+  add_options<O>(*command, rows, *options);
+  command->get_option("--scene")->default_str(kAll);
+  command->get_option("--smoke")->excludes("--count")->excludes("--scene")->excludes("--scene-intervals");
   command->callback([options] {
-    BenchmarkPlan& plan = options->plan;
-    plan.folder = options->folder;
+    BenchmarkPlan& plan = *options;
+    plan.folder = options->out;
     if (options->smoke) {
       plan.small = 60;
-      options->scenes = {kNone};
+      options->scene_words = {kNone};
     }
-    plan.scenes = scenes_called(options->scenes);
+    plan.scenes = scenes_called(options->scene_words);
     make_benchmark(plan, progress_of("benchmark"));
     const Benchmark made = read_benchmark(plan.folder);
     std::size_t touching = 0, crossing = 0, contacts = 0;
@@ -104,17 +95,18 @@ void add_answer(CLI::App& benchmark) {
       "  cscd benchmark answer benchmark --strategy \"drvbc_fast --first\" --json first.json\n\n"
       "Says how many intervals the strategy leaves out, and why. Every answer is verified before it is "
       "timed, as in\ncscd run. Exit status 1 where one breaks the strategy's promise; it then has no time.");
-  command->add_option("benchmark", options->folder, "the folder of a benchmark")->required();
-  command->add_option("--strategy", options->strategy, "a strategy, or \"STRATEGY --first\"")->required();
-  command->add_option("--elementary", options->elementary, "elementary test (cscd list tests)")
-      ->capture_default_str();
-  command->add_option("--json", options->output, "where the answers go; - is standard output")->required();
-  command
-      ->add_option("--repetitions", options->repetitions,
-                   "how often each interval is asked; its time is the median")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000));
-  command->add_flag("--force", options->force, "replace the output if it exists");
+  using O = Options;
+  static const OptionRow<O> rows[] = {
+      required<O>({"benchmark", &O::folder, "the folder of a benchmark"}),
+      required<O>({"--strategy", &O::strategy, "a strategy, or \"STRATEGY --first\""}),
+      {"--elementary", &O::elementary, "elementary test (cscd list tests)"},
+      required<O>({"--json", &O::output, "where the answers go; - is standard output"}),
+      {"--repetitions",
+       &O::repetitions,
+       "how often each interval is asked; its time is the median",
+       {{1, 1000}}},
+      {"--force", &O::force, "replace the output if it exists"}};
+  add_options<O>(*command, rows, *options);
   command->callback([options] {
     const std::vector<StrategyRow> rows = rows_called(std::vector<std::string>{options->strategy});
     if (rows.size() != 1)
@@ -156,16 +148,18 @@ void add_judge(CLI::App& benchmark) {
       "bench/BENCHMARK.md describes the format of answers and defines every count. The exit status is 0 "
       "whatever\n"
       "the score; 2 for a damaged benchmark or malformed answers, with one line that says how to mend them.");
-  command->add_option("benchmark", options->folder, "the folder of a benchmark")->required();
-  command->add_option("answers", options->answers, "the answers, as JSON or JSON lines")->required();
-  command
-      ->add_option("--time-tolerance", options->time_tolerance,
-                   "times that are off by no more than this share of the interval are neither late nor early")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0));
-  command->add_flag("--families", options->families, "a row for each family instead of each set of them");
-  command->add_option("--json", options->output, "where the whole score goes; - is standard output");
-  command->add_flag("--force", options->force, "replace the output if it exists");
+  using O = Options;
+  static const OptionRow<O> rows[] = {
+      required<O>({"benchmark", &O::folder, "the folder of a benchmark"}),
+      required<O>({"answers", &O::answers, "the answers, as JSON or JSON lines"}),
+      {.name = "--time-tolerance",
+       .member = &O::time_tolerance,
+       .help = "times that are off by no more than this share of the interval are neither late nor early",
+       .range = {{0, 1}},
+       .names_zero = true},
+      {"--families", &O::families, "a row for each family instead of each set of them"}};
+  add_options<O>(*command, rows, *options);
+  add_output_options(*command, *options, "where the whole score goes; - is standard output");
   command->callback([options] {
     OutputFile output(options->output, options->force);
     const Benchmark judged = read_benchmark(options->folder);

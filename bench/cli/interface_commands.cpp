@@ -6,6 +6,7 @@
 
 #include "bench/cli/interface/manual_page.h"
 #include "bench/cli/interface/shell_completion.h"
+#include "bench/command_line/add_options.h"
 #include "bench/output/output.h"
 
 namespace cscd::bench {
@@ -35,8 +36,11 @@ void add_manual(CLI::App& app) {
       app.add_subcommand("manual",
                          "Write the manual page of the program and of each command, for man.\n\n"
                          "  cscd manual --out man && man man/cscd-query.1");
-  command->add_option("--out", options->folder, "the folder; made where it is missing")->required();
-  command->add_flag("--force", options->force, "replace files that exist");
+  using O = Options;
+  static const OptionRow<O> rows[] = {
+      required<O>({"--out", &O::folder, "the folder; made where it is missing"}),
+      {"--force", &O::force, "replace files that exist"}};
+  add_options<O>(*command, rows, *options);
   command->callback([options, &app] {
     std::error_code ignored;  // where there is no folder then, the first page says so
     std::filesystem::create_directories(options->folder, ignored);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/cli/scene_file.h"
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/output/glossary.h"
 #include "bench/strategies/catalogue.h"
@@ -289,14 +290,16 @@ void add_list(CLI::App& app) {
       "  cscd list rope           all about one: a scene's story, the parameters of a shape or an effect\n"
       "  cscd list embedded       what a word means that help, answers or records use\n"
       "  cscd list scene-file     what a scene file may hold");
-  command->add_option(
-      "what", options->asked,
-      "scenes, strategies, tests, shapes, effects, families, words, scene-file, or a name; default all "
-      "sections");
-  CLI::Option* json_flag = command->add_flag("--json", options->json, "for a machine to read");
-  command->add_flag("--names", options->names, "names alone, a line each")->excludes(json_flag);
-  command->add_flag("--markdown", options->markdown, "with scene-file: the page scenes/README.md")
-      ->excludes(json_flag);
+  using L = ListOptions;
+  static const OptionRow<L> rows[] = {
+      {"what", &L::asked,
+       "scenes, strategies, tests, shapes, effects, families, words, scene-file, or a name; default all "
+       "sections"},
+      {"--json", &L::json, "for a machine to read"},
+      {"--names", &L::names, "names alone, a line each"},
+      {"--markdown", &L::markdown, "with scene-file: the page scenes/README.md"}};
+  add_options<L>(*command, rows, *options);
+  command->get_option("--json")->excludes("--names")->excludes("--markdown");
   command->callback([options] { list(*options); });
 }
 

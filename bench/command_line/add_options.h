@@ -7,8 +7,8 @@
 namespace cscd::bench {
 
 // Adds the options of rows to a command, in a group of its help. `owner` must live as long as the command.
-// Help names the default of an option unless it is empty or zero, which stands for one that depends on other
-// options.
+// Help names the default of an option unless it is empty, or zero where the row does not say that zero is
+// meant: these stand for a default that depends on other options.
 template <class Owner>
 void add_options(CLI::App& command, std::span<const OptionRow<Owner>> rows, Owner& owner,
                  const std::string& group = "Options") {
@@ -38,13 +38,22 @@ void add_options(CLI::App& command, std::span<const OptionRow<Owner>> rows, Owne
             if (row.repeats)
               option->allow_extra_args(false);
             else if constexpr (requires { value.front(); } && !std::is_same_v<Value, std::string>)
-              option->delimiter(',');
-            if (value != Value{}) option->capture_default_str();
+              if (!option->get_positional()) option->delimiter(',');
+            if (row.names_zero || value != Value{}) option->capture_default_str();
           }
           if (row.type != nullptr) option->type_name(row.type);
-          option->group(group);
+          option->group(group)->required(row.required);
         },
         row.member);
+}
+
+// Adds --json, the place of the owner's `output`, and --force.
+template <class Owner>
+void add_output_options(CLI::App& command, Owner& owner, const char* help, bool required = false) {
+  const OptionRow<Owner> rows[] = {
+      {.name = "--json", .member = &Owner::output, .help = help, .required = required},
+      {"--force", &Owner::force, "replace the output if it exists"}};
+  add_options<Owner>(command, rows, owner);
 }
 
 }  // namespace cscd::bench

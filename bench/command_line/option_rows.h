@@ -18,7 +18,7 @@ namespace cscd::bench {
 
 template <class Owner>
 struct OptionRow {
-  const char* name;  // with its dashes
+  const char* name;  // as on the command line: with its dashes, or without for a word by its position
   std::variant<bool Owner::*, int Owner::*, std::size_t Owner::*, double Owner::*,
                std::optional<int> Owner::*, std::optional<std::size_t> Owner::*,
                std::optional<double> Owner::*, std::string Owner::*, WrittenLength Owner::*,
@@ -30,7 +30,15 @@ struct OptionRow {
   std::vector<std::string> choices = {};                          // of a text, or of each of a list
   const char* type = nullptr;  // what help calls the value; null for the name of its type
   bool repeats = false;        // a list of which each item has the option's name before it
+  bool required = false;
+  bool names_zero = false;  // help names the default also where it is zero
 };
+
+template <class Owner>
+OptionRow<Owner> required(OptionRow<Owner> row) {
+  row.required = true;
+  return row;
+}
 
 // Numbers are written as JSON writes them, and items of lists with commas between them. An absent number is
 // empty.

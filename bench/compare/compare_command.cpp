@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/compare/comparison.h"
 #include "bench/output/json_text.h"
@@ -45,16 +46,19 @@ void add_compare(CLI::App& app) {
       "verdict about times is possible, the times of both sides are shown all the same, with the reason.\n\n"
       "Exit status: 0 nothing worse; 1 worse or less true; 2 something could not be compared, and the rest\n"
       "is not worse.");
-  command->add_option("old", options->before, "records of the old program: files or folders, commas between")
-      ->required();
-  command->add_option("new", options->after, "records of the new program: the same")->required();
-  command->add_option("--lane", options->lane, "what is compared: all, or everything but times (counters)")
-      ->check(CLI::IsMember({"all", "counters"}))
-      ->capture_default_str();
-  command->add_option("--json", options->json, "where the comparison goes as JSON; - is standard output");
-  command->add_option("--markdown", options->markdown, "where it goes as Markdown, for a pull request");
-  command->add_flag("--all", options->show_all, "show every finding and every time, scene by scene");
-  command->add_flag("--force", options->force, "replace files that exist");
+  using C = CompareOptions;
+  static const OptionRow<C> rows[] = {
+      required<C>({"old", &C::before, "records of the old program: files or folders, commas between"}),
+      required<C>({"new", &C::after, "records of the new program: the same"}),
+      {.name = "--lane",
+       .member = &C::lane,
+       .help = "what is compared: all, or everything but times (counters)",
+       .choices = {"all", "counters"}},
+      {"--json", &C::json, "where the comparison goes as JSON; - is standard output"},
+      {"--markdown", &C::markdown, "where it goes as Markdown, for a pull request"},
+      {"--all", &C::show_all, "show every finding and every time, scene by scene"},
+      {"--force", &C::force, "replace files that exist"}};
+  add_options<C>(*command, rows, *options);
   command->callback([options] { compare_sides(*options); });
 }
 

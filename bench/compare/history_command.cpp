@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/compare/history.h"
 #include "bench/output/json_text.h"
@@ -14,9 +15,9 @@
 namespace cscd::bench {
 namespace {
 
-struct HistoryOptions {
+struct HistoryOptions : CourseChoice {
+  HistoryOptions() { stage = kSpeedupStage; }
   std::string folder = "results/history", records, json;
-  CourseChoice choice{"", "", "", std::string(kSpeedupStage)};
   bool all = false, force = false;
 };
 
@@ -37,16 +38,16 @@ void keep_entry(const HistoryOptions& options) {
 
 void history(const HistoryOptions& options) {
   if (!options.records.empty()) return keep_entry(options);
-  std::vector<Course> courses = read_courses(options.folder, options.choice);
+  std::vector<Course> courses = read_courses(options.folder, options);
   if (courses.empty())
     throw InputError("no entry of " + options.folder + " has such a row; see cscd history");
-  const bool chosen = !options.choice.row.empty() || !options.choice.scene.empty();
+  const bool chosen = !options.row.empty() || !options.scene.empty();
   // Rows of the groups, which vary one thing or another, are for whoever asks for them.
   const auto is_variant = [](const Course& course) {
     const auto rows = strategies_in("");
     return std::ranges::none_of(rows, [&](const Strategy* row) { return row->name == course.row; });
   };
-  const bool in_short = !chosen && !options.all && options.choice.stage == kSpeedupStage;
+  const bool in_short = !chosen && !options.all && options.stage == kSpeedupStage;
   const std::size_t variants = in_short ? std::erase_if(courses, is_variant) : 0;
   if (!options.json.empty()) OutputFile(options.json, options.force).commit(json_text(courses_json(courses)));
   std::string text = in_short ? speedups_text(courses) : courses_text(courses, chosen, options.all);
@@ -71,19 +72,23 @@ void add_history(CLI::App& app) {
       "segments that fit the logarithms best when each of them costs a fixed amount (optimal partitioning).\n"
       "A speedup is a ratio within one run, over base or else drvbc. So it goes on from machine to machine,\n"
       "and changes where either row does; times are those of one kind of machine.");
-  command->add_option("folder", options->folder, "the folder of the entries")->capture_default_str();
-  command->add_option("--machine", options->choice.machine, "of this kind of machine alone: a folder's name");
-  command->add_option("--scene", options->choice.scene, "of this scene alone");
-  command->add_option("--row", options->choice.row, "of this row alone");
-  command->add_option("--stage", options->choice.stage, "of this stage of a query")
-      ->type_name("TEXT:{speedup,total,refit,rv_update,traversal,elementary,embedding,start,preparation}")
-      ->capture_default_str();
-  command->add_flag("--all", options->all, "show courses of a single commit too");
-  command->add_option("--keep", options->records,
-                      "add an entry of these records: files or folders, commas between. Git is asked for the "
-                      "commit's date,\nso the folder of entries lies in the repository");
-  command->add_option("--json", options->json, "where the courses go as JSON; - is standard output");
-  command->add_flag("--force", options->force, "replace that file if it exists");
+  using H = HistoryOptions;
+  static const OptionRow<H> rows[] = {
+      {"folder", &H::folder, "the folder of the entries"},
+      {"--machine", &H::machine, "of this kind of machine alone: a folder's name"},
+      {"--scene", &H::scene, "of this scene alone"},
+      {"--row", &H::row, "of this row alone"},
+      {.name = "--stage",
+       .member = &H::stage,
+       .help = "of this stage of a query",
+       .type = "TEXT:{speedup,total,refit,rv_update,traversal,elementary,embedding,start,preparation}"},
+      {"--all", &H::all, "show courses of a single commit too"},
+      {"--keep", &H::records,
+       "add an entry of these records: files or folders, commas between. Git is asked for the "
+       "commit's date,\nso the folder of entries lies in the repository"},
+      {"--json", &H::json, "where the courses go as JSON; - is standard output"},
+      {"--force", &H::force, "replace that file if it exists"}};
+  add_options<H>(*command, rows, *options);
   command->callback([options] { history(*options); });
 }
 

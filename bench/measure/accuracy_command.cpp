@@ -70,13 +70,15 @@ std::span<const OptionRow<AccuracyOptions>> accuracy_options() {
        "how far the points of random queries are moved off a lattice, as shares of a query's size",
        {{1e-18, 1}}},
       {"--passes", &A::passes, "how often every test is asked the same block", {{1, 1000}}},
-      {"--seed", &A::seed, "of the queries and of the order of the tests"}};
+      {"--seed", &A::seed, "of the queries and of the order of the tests"},
+      {"--smoke", &A::smoke, "seconds instead of minutes; times mean nothing"}};
   return rows;
 }
 
-// With everything that was left open filled in.
+// With everything that was left open filled in, so it does not say --smoke.
 std::vector<std::string> command_line(AccuracyOptions options) {
   options.set = std::filesystem::path(options.set).filename();  // not where it lies on this machine
+  options.smoke = false;
   std::vector<std::string> words = {"cscd", "accuracy"};
   echo_options<AccuracyOptions>(accuracy_options(), options, words);
   return words;
@@ -320,9 +322,7 @@ void add_accuracy(CLI::App& app) {
       "scenes that get past bounds and filter. Exit status 1 where a test is wrong in what it proves, or\n"
       "the oracle contradicts a published truth.");
   add_options(*command, accuracy_options(), *options);
-  command->add_flag("--smoke", options->smoke, "seconds instead of minutes; times mean nothing");
-  command->add_option("--json", options->output, "where the record goes");
-  command->add_flag("--force", options->force, "replace the output if it exists");
+  add_output_options(*command, *options, "where the record goes");
   command->callback([options] { run_accuracy(*options); });
 }
 

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/output/output.h"
 #include "bench/statistics/statistics.h"
@@ -132,15 +133,15 @@ void add_elementary(CLI::App& app) {
       "Eight rows a query, x_num,x_den,y_num,y_den,z_num,z_den[,truth]: four points at t = 0, then at t =\n"
       "1. vf: the vertex, then the triangle's corners. ee: the first edge's ends, then the second's. Exit\n"
       "status 1 where a test is wrong in what it proves.");
-  command->add_option("file", options->file, "the queries, CSV")->required();
-  command->add_option("--kind", options->kind, "vf or ee")->required()->check(CLI::IsMember({"vf", "ee"}));
-  command
-      ->add_option("--elementary", options->elementary,
-                   "tests with commas between them (cscd list tests), or all; NAME@TOLERANCE[:STEPS] chooses "
-                   "parameters")
-      ->capture_default_str();
-  command->add_option("--json", options->output, "where every answer goes");
-  command->add_flag("--force", options->force, "replace the output if it exists");
+  using E = ElementaryOptions;
+  static const OptionRow<E> rows[] = {
+      required<E>({"file", &E::file, "the queries, CSV"}),
+      {.name = "--kind", .member = &E::kind, .help = "vf or ee", .choices = {"vf", "ee"}, .required = true},
+      {"--elementary", &E::elementary,
+       "tests with commas between them (cscd list tests), or all; NAME@TOLERANCE[:STEPS] chooses "
+       "parameters"}};
+  add_options<E>(*command, rows, *options);
+  add_output_options(*command, *options, "where every answer goes");
   command->callback([options] { run_elementary(*options); });
 }
 

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/output/output.h"
 #include "core/base/error.h"
@@ -54,15 +55,18 @@ void add_hardcases(CLI::App& app) {
       "  cscd hardcases --out FOLDER              the suite: on the lattice and some ulps off it\n"
       "  cscd hardcases --out FOLDER --hardness 1e-9   off the lattice by that share of their size\n\n"
       "Two files a family (cscd list families), FAMILY-vf.csv and FAMILY-ee.csv.");
-  command->add_option("--out", options->folder, "an existing folder")->required();
-  command->add_option("--queries", options->queries, "of each family and kind")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 10'000'000));
-  command->add_option("--seed", options->seed, "the same seed gives the same queries")->capture_default_str();
-  command->add_option("--hardness", options->hardness, "the smaller, the harder; 0: the suite")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0));
-  command->add_flag("--force", options->force, "replace files that exist");
+  using H = HardCasesOptions;
+  static const OptionRow<H> rows[] = {
+      required<H>({"--out", &H::folder, "an existing folder"}),
+      {"--queries", &H::queries, "of each family and kind", {{1, 10'000'000}}},
+      {"--seed", &H::seed, "the same seed gives the same queries"},
+      {.name = "--hardness",
+       .member = &H::hardness,
+       .help = "the smaller, the harder; 0: the suite",
+       .range = {{0, 1}},
+       .names_zero = true},
+      {"--force", &H::force, "replace files that exist"}};
+  add_options<H>(*command, rows, *options);
   command->callback([options] { write_hard_cases(*options); });
 }
 

@@ -267,34 +267,25 @@ void add_run(CLI::App& app) {
   add_replay_options(*command, options->request);
   add_options(*command, ignore_options(), options->ignored);
   add_options(*command, thickness_options(), options->thickness);
-  CLI::Option* json =
-      command
-          ->add_option(
-              "--json", options->output,
-              "where the record goes, - is standard output; with --scene all or a folder, the folder "
-              "of the records")
-          ->type_name("FILE")
-          ->required();
-  command->add_flag("--force", options->force, "replace the output if it exists");
-  CLI::Option* shards =
-      command
-          ->add_option("--shards", options->shards,
-                       "divide the run into shards, and keep the result of each in this folder: what is\n"
-                       "there is not measured again")
-          ->group("A long run");
-  command->add_option("--shard-intervals", options->shard_intervals, "intervals of a shard")
-      ->check(CLI::Range(1, 1000000000))
-      ->capture_default_str()
-      ->needs(shards)
-      ->group("A long run");
-  command
-      ->add_option("--worker", options->worker,
-                   "I/N: measure every N-th shard from the I-th on, and write no record; the same command\n"
-                   "without --worker measures what is missing and writes it")
-      ->needs(shards)
-      ->excludes(json)
-      ->each([json](const std::string&) { json->required(false); })
-      ->group("A long run");
+  using R = RunOptions;
+  static const OptionRow<R> long_run[] = {
+      {"--shards", &R::shards,
+       "divide the run into shards, and keep the result of each in this folder: what is\n"
+       "there is not measured again"},
+      {"--shard-intervals", &R::shard_intervals, "intervals of a shard", {{1, 1'000'000'000}}},
+      {"--worker", &R::worker,
+       "I/N: measure every N-th shard from the I-th on, and write no record; the same command\n"
+       "without --worker measures what is missing and writes it"}};
+  add_output_options(*command, *options,
+                     "where the record goes, - is standard output; with --scene all or a folder, the folder "
+                     "of the records",
+                     true);
+  CLI::Option* json = command->get_option("--json")->type_name("FILE");
+  add_options<R>(*command, long_run, *options, "A long run");
+  command->get_option("--shard-intervals")->needs("--shards");
+  command->get_option("--worker")->needs("--shards")->excludes(json)->each([json](const std::string&) {
+    json->required(false);
+  });
   command->callback([options] { run(*options); });
 }
 

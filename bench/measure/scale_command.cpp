@@ -372,8 +372,7 @@ void add_scale(CLI::App& app) {
       "--reference-up-to on one interval a step, and the others against each other. Exit status 1 where an\n"
       "answer is wrong. \"STRATEGY --first\" looks for the earliest contact alone.");
   add_options(*command, scale_options(), *options);
-  command->add_option("--json", options->output, "where the record goes");
-  command->add_flag("--force", options->force, "replace the output if it exists");
+  add_output_options(*command, *options, "where the record goes");
   command->callback([options] { run_scale(*options); });
 }
 

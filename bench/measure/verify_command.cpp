@@ -1,6 +1,7 @@
 #include <CLI/App.hpp>
 #include <cstdio>
 
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/harness/random_verification.h"
 #include "bench/output/progress.h"
@@ -9,8 +10,7 @@
 namespace cscd::bench {
 
 void add_verify(CLI::App& app) {
-  struct Options {
-    RandomVerification plan;
+  struct Options : RandomVerification {
     std::vector<std::string> strategies;
     std::string folder = ".";
   };
@@ -23,26 +23,22 @@ void add_verify(CLI::App& app) {
       "\"STRATEGY --first\" looks for the earliest contact alone.\n\n"
       "A failing interval is written as a point cache that `cscd query` replays. Exit status 1 if there is "
       "one.");
-  command->add_option("--intervals", options->plan.intervals, "how many")->capture_default_str();
-  command
-      ->add_option("--strategy", options->strategies,
-                   "strategies or groups of them, with commas between; default all")
-      ->delimiter(',');
-  command->add_option("--seed", options->plan.first_seed, "the first interval's seed; the next ones count up")
-      ->capture_default_str();
-  command
-      ->add_option("--brute-every", options->plan.brute_every, "all pairs as the reference for every so many")
-      ->capture_default_str()
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--thick", options->plan.thick,
-                    "every interval at a random thickness, by the strategies that know distances");
-  command->add_option("--failures", options->folder, "folder for failing intervals")->capture_default_str();
+  using O = Options;
+  static const OptionRow<O> rows[] = {
+      {"--intervals", &O::intervals, "how many"},
+      {"--strategy", &O::strategies, "strategies or groups of them, with commas between; default all"},
+      {"--seed", &O::first_seed, "the first interval's seed; the next ones count up"},
+      {"--brute-every", &O::brute_every, "all pairs as the reference for every so many"},
+      {"--thick", &O::thick, "every interval at a random thickness, by the strategies that know distances"},
+      {"--failures", &O::folder, "folder for failing intervals"}};
+  add_options<O>(*command, rows, *options);
+  command->get_option("--brute-every")->check(CLI::PositiveNumber);
   command->callback([options] {
     std::vector<StrategyRow> rows = rows_called(options->strategies);
     if (rows.empty()) rows = rows_of(strategies());
-    Progress progress("verify", options->plan.intervals);
+    Progress progress("verify", options->intervals);
     const RandomSummary summary =
-        verify_random(options->plan, rows, [&](std::size_t done) { progress.set(done); });
+        verify_random(*options, rows, [&](std::size_t done) { progress.set(done); });
     std::printf("%s", describe(summary).c_str());
     for (const RandomFailure& failure : summary.failures)
       std::printf("FAILED %s\n", write_failure(failure, options->folder).c_str());

@@ -1,6 +1,7 @@
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/inputs/input.h"
 #include "bench/inputs/input_options.h"
@@ -63,12 +64,13 @@ void add_clusters(CLI::App& app) {
                                          "Write the surface at one frame with the cluster of every triangle "
                                          "and whether the observer of that cluster sees its front "
                                          "throughout the interval, for a picture.");
-  command->add_option("input", options->input, kInputHelp)->required();
-  command->add_option("--frame", options->frame, "where the interval starts")->capture_default_str();
-  command->add_option("--strategy", options->strategy,
-                      "a radial strategy; default the best that the input allows");
-  command->add_option("--json", options->output, "where it goes; - is standard output")->required();
-  command->add_flag("--force", options->force, "replace the output if it exists");
+  using C = ClusterOptions;
+  static const OptionRow<C> rows[] = {
+      required<C>({"input", &C::input, kInputHelp}),
+      {.name = "--frame", .member = &C::frame, .help = "where the interval starts", .names_zero = true},
+      {"--strategy", &C::strategy, "a radial strategy; default the best that the input allows"}};
+  add_options<C>(*command, rows, *options);
+  add_output_options(*command, *options, "where it goes; - is standard output", true);
   add_model_options(*command, options->model);
   command->callback([options] { clusters(*options); });
 }

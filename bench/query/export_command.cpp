@@ -114,15 +114,15 @@ void add_export(CLI::App& app) {
       "  cscd export rope rope.usda          points over time, coloured by what touches, with contacts\n"
       "  cscd export character.glb walk.h5 --clip walk --fps 60");
   add_answer_options(*command, *options);
-  command->add_option("output", options->output, "the file to write; its extension names the format")
-      ->required();
-  static const OptionRow<ExportOptions> rows[] = {
-      {"--bake", &ExportOptions::bake, "a .glb of positions alone, as morph targets, from any input"},
-      {"--events", &ExportOptions::events,
+  using E = ExportOptions;
+  static const OptionRow<E> rows[] = {
+      required<E>({"output", &E::output, "the file to write; its extension names the format"}),
+      {"--bake", &E::bake, "a .glb of positions alone, as morph targets, from any input"},
+      {"--events", &E::events,
        "a .ply with how deep each vertex lies in another piece, as quality and colour, and "
        "NAME.curves.0000.obj with the curves in which the surface crosses itself"},
-      {"--force", &ExportOptions::force, "replace the output if it exists"}};
-  add_options<ExportOptions>(*command, rows, *options);
+      {"--force", &E::force, "replace the output if it exists"}};
+  add_options<E>(*command, rows, *options);
   command->callback([options, command] {
     options->answer_option = given_answer_option(*command);
     export_input(*options);

@@ -306,9 +306,10 @@ void add_inspect(CLI::App& app) {
       "  cscd inspect character.glb\n"
       "  cscd inspect character.fbx --fill-holes 12 --json report.json\n"
       "  cscd inspect skirt --thickness 0.2e         and how many pairs of features are that close at rest");
-  command->add_option("input", options->input, kInputHelp)->required();
-  command->add_option("--json", options->output, "where the same goes for a machine to read");
-  command->add_flag("--force", options->force, "replace the output if it exists");
+  using I = InspectOptions;
+  static const OptionRow<I> rows[] = {required<I>({"input", &I::input, kInputHelp})};
+  add_options<I>(*command, rows, *options);
+  add_output_options(*command, *options, "where the same goes for a machine to read");
   add_options(*command, thickness_options().first(1), options->thickness);
   add_model_options(*command, options->model);
   command->callback([options] { inspect(*options); });

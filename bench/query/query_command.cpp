@@ -239,9 +239,8 @@ void add_query(CLI::App& app) {
       "Where triangles cross at starts, the text lists the ten places in which the surface lies deepest in\n"
       "itself: which piece in which, how deep, and from when to when. The JSON has all of them.");
   add_answer_options(*command, *options);
+  add_output_options(*command, *options, "where the whole answer goes; - is standard output");
   static const OptionRow<QueryOptions> rows[] = {
-      {"--json", &QueryOptions::output, "where the whole answer goes; - is standard output"},
-      {"--force", &QueryOptions::force, "replace the output if it exists"},
       {"--start-pairs", &QueryOptions::start_pairs,
        "how many of the pairs of triangles that cross at a start are listed, or all; default 1000"},
       {"--fail-on-contact", &QueryOptions::fail_on_contact,

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/compare/history.h"
 #include "bench/compare/times.h"
@@ -196,22 +197,20 @@ void add_report(CLI::App& app) {
       "  cscd report results/FOLDER --json figures.json    the same as data; also of cscd accuracy or cscd "
       "scale alone\n\n"
       "The page, site/index.html, needs no network. Every figure names the records that it comes from.");
-  command
-      ->add_option("records", options->records,
+  using R = ReportOptions;
+  static const OptionRow<R> rows[] = {
+      required<R>({"records", &R::records,
                    "what cscd run wrote, at most one a scene and pipeline; and what cscd accuracy and cscd "
-                   "scale wrote; or folders of these")
-      ->required();
-  command->add_option("--history", options->history,
-                      "a folder of entries of cscd history, such as results/history, to show too");
-  command->add_flag(
-      "--view", options->views,
-      "write a page of cscd view for every scene too: the interval under the pointer is shown in "
-      "it");
-  command->add_option("-o,--out", options->folder, "the folder for the page; made where it is missing");
-  command->add_option("--json", options->json,
-                      "where all that the page shows goes as JSON; - is standard output. Without a page, no "
-                      "record of cscd run has to be there");
-  command->add_flag("--force", options->force, "replace the page if it exists");
+                   "scale wrote; or folders of these"}),
+      {"--history", &R::history, "a folder of entries of cscd history, such as results/history, to show too"},
+      {"--view", &R::views,
+       "write a page of cscd view for every scene too: the interval under the pointer is shown in it"},
+      {"-o,--out", &R::folder, "the folder for the page; made where it is missing"},
+      {"--json", &R::json,
+       "where all that the page shows goes as JSON; - is standard output. Without a page, no "
+       "record of cscd run has to be there"},
+      {"--force", &R::force, "replace the page if it exists"}};
+  add_options<R>(*command, rows, *options);
   command->callback([options] { report(*options); });
 }
 

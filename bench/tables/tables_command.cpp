@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "bench/command_line/add_options.h"
 #include "bench/command_line/command.h"
 #include "bench/output/json_text.h"
 #include "bench/output/output.h"
@@ -73,16 +74,17 @@ void add_tables(CLI::App& app) {
       "                                            The folder has to exist\n\n"
       "Times are means over the timed intervals, the median over the repetitions; ratios are paired within\n"
       "a repetition. A scene with a record of the pipeline `published` is shown in that one.");
-  command
-      ->add_option("records", options->records,
+  using T = TableOptions;
+  static const OptionRow<T> rows[] = {
+      required<T>({"records", &T::records,
                    "what cscd run wrote, at most one a scene and pipeline, or folders of it; other files of "
-                   "this program are left out")
-      ->required();
-  command->add_option("--out", options->folder, "the folder for the files");
-  command->add_flag("--intervals", options->intervals, "lines with the ends of the 95 % intervals too");
-  command->add_flag("--no-claims", options->no_claims,
-                    "hold no claim of the paper against these records, and write no claims.md");
-  command->add_flag("--force", options->force, "replace files that exist");
+                   "this program are left out"}),
+      {"--out", &T::folder, "the folder for the files"},
+      {"--intervals", &T::intervals, "lines with the ends of the 95 % intervals too"},
+      {"--no-claims", &T::no_claims,
+       "hold no claim of the paper against these records, and write no claims.md"},
+      {"--force", &T::force, "replace files that exist"}};
+  add_options<T>(*command, rows, *options);
   command->callback([options] { tables(*options); });
 }
 
