@@ -86,27 +86,21 @@ std::uint64_t contacts_of(const json& row) {
   return static_cast<std::uint64_t>(std::llround(mean * row.at("intervals").get<double>()));
 }
 
-// What the answers of a row lack in a step, in words; empty where nothing is lacking.
-std::string shortfall_of(const json& subject, const json& step, const json& row) {
+// What the answers of a row lack in a step of a record of cscd.scale/1, in words; empty where nothing is
+// lacking. Such a record does not say it: it follows from the contacts that complete rows count in as many
+// intervals, and from starts from which the row promises nothing.
+std::string derived_shortfall(const json& subject, const json& step, const json& row) {
   constexpr std::string_view kComplete = "complete";
   const std::string guarantee = guarantee_of(subject, row);
-  if (row.contains("shortfall") || guarantee == kComplete) return row.value("shortfall", "");
-  if (row.at("intervals") == 0) return "";
+  if (guarantee == kComplete) return "";
   const std::size_t starts = step.at("starts").size(),
                     good = step.value("clear", step.at("embedded").get<std::size_t>());
   Shortfall lacking{0, contacts_of(row), starts, needs_embedded_start(guarantee) ? starts - good : 0};
-  bool is_judged = is_first(row);
-  for (const json& other : step.at("strategies")) {
-    if (is_first(row) || guarantee_of(subject, other) != kComplete || is_first(other) ||
-        other.at("intervals") != row.at("intervals"))
-      continue;
-    is_judged = true;
-    lacking.contacts_expected = std::max(lacking.contacts_expected, contacts_of(other));
-  }
-  const std::string text = shortfall_text(lacking);
-  if (is_judged || step.at("colliding") == 0) return text;
-  return "may have lost contacts, as no complete row answered the same intervals" +
-         (text.empty() ? "" : "; " + text);
+  for (const json& other : step.at("strategies"))
+    if (!is_first(row) && !is_first(other) && guarantee_of(subject, other) == kComplete &&
+        other.at("intervals") == row.at("intervals"))
+      lacking.contacts_expected = std::max(lacking.contacts_expected, contacts_of(other));
+  return shortfall_text(lacking);
 }
 
 const json& size_of(const std::string& study, const json& subject, const json& step) {
@@ -137,6 +131,7 @@ json accuracy_json(const json& record) {
 }
 
 json growth_json(const json& record) {
+  const bool has_shortfalls = record.at("schema") != "cscd.scale/1";
   json points = json::array(), fits = json::array(), shortfalls = json::array();
   for (const json& subject : record.at("subjects")) {
     const std::string study = subject.at("study");
@@ -145,7 +140,8 @@ json growth_json(const json& record) {
       json& of_step = of_subject.emplace_back(json::object());
       for (const json& row : step.at("strategies")) {
         if (!row.contains("ms")) continue;  // its answers were not verified
-        const std::string lacking = shortfall_of(subject, step, row);
+        const std::string lacking =
+            has_shortfalls ? row.value("shortfall", "") : derived_shortfall(subject, step, row);
         if (!lacking.empty()) of_step[row.at("name").get<std::string>()] = lacking;
         if (study == "contacts") continue;  // ratios of two scenes, at one size
         // Of small steps, a chart shows the plainest: those that follow each other, where touching counts.

@@ -16,8 +16,7 @@ nlohmann::json accuracy_json(const nlohmann::json& record);
 // For each study, scene and strategy the milliseconds of a query at each size, and the exponent of the power
 // law through them where one was fitted. A size is a number of triangles, of bones or of threads, a length of
 // step or a thickness. `shortfalls` says what the rows of each step of each subject lack (shortfall.h), by
-// name; where a record does not say, it follows from the contacts that complete rows count in as many
-// intervals, and from starts from which a row promises nothing.
+// name.
 nlohmann::json growth_json(const nlohmann::json& record);
 
 }  // namespace cscd::bench
