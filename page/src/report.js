@@ -5,8 +5,6 @@ import { showAccuracy, showGrowth, showHistory } from "./studies.js";
 import { shapedTable, tableOf } from "./tables.js";
 import { number } from "./words.js";
 
-const COUNTERS = [["bvot", "overlap tests of bounding volumes (Figure 11)"], ["pctp", "triangle pairs left by culling (Figure 12)"], ["elementary_tests", "elementary tests"], ["not_positive", "triangles that are not positive"]];
-
 class Report {
   constructor(data) {
     this.data = data;
@@ -82,7 +80,7 @@ class Report {
       this.record = this.data.records[Number(select.value)];
       choose();
     });
-    radios(byId("counters"), COUNTERS, (counter) => {
+    radios(byId("counters"), this.data.looks.counters, (counter) => {
       this.counter = counter;
       choose();
     });
@@ -173,10 +171,10 @@ class Report {
   stages() {
     const box = byId("stage-chart");
     const key = element("p"), { looks } = this.data, { stages } = looks;
-    for (const [stage, colour] of stages) {
+    for (const [, title, colour] of stages) {
       const item = element("span", undefined, "key"), swatch = element("i");
       swatch.style.background = colour;
-      item.append(swatch, stage);
+      item.append(swatch, title);
       key.append(item);
     }
     box.append(key);
@@ -190,12 +188,12 @@ class Report {
       const most = Math.max(...rows.map(total));
       for (const strategy of rows) {
         const bar = element("span", undefined, "bar");
-        for (const [stage, colour] of stages) {
+        for (const [stage, title, colour] of stages) {
           if (!strategy.stages[stage]) continue;
           const piece = element("i");
           piece.style.width = `${(100 * strategy.stages[stage]) / most}%`;
           piece.style.background = colour;
-          piece.title = `${stage}: ${number(strategy.stages[stage])} ms`;
+          piece.title = `${title}: ${number(strategy.stages[stage])} ms`;
           bar.append(piece);
         }
         bars.append(element("span", strategy.name), bar, element("span", `${number(total(strategy))} ms${strategy.marked ? "*" : ""}`));

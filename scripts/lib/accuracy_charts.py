@@ -1,5 +1,5 @@
 """The charts of scripts/figures accuracy."""
-from charts import label_panels, log_axis, marker, matplotlib, panels, save, test_colour
+from charts import GREY, label_panels, log_axis, marker, matplotlib, panels, save, test_colour
 from accuracy_sums import GROUPS, base
 
 NOTHING = {"color": "#e8f4e8", "zorder": 0}  # the band in which a share of zero is drawn
@@ -63,9 +63,9 @@ def draw_pareto(record, folder, pdf):
     key = cells[len(groups)]
     key.axis("off")
     handles = [symbol(name, **look) for name, look in styles.items()]
-    handles += [symbol("filled: no contact lost", marker="o", color="#666666"),
-                symbol("hollow: contacts lost", marker="o", color="#666666", mfc="white"),
-                symbol("small: other tolerances", marker="o", color="#666666", ms=4.5),
+    handles += [symbol("filled: no contact lost", marker="o", color=GREY),
+                symbol("hollow: contacts lost", marker="o", color=GREY, mfc="white"),
+                symbol("small: other tolerances", marker="o", color=GREY, ms=4.5),
                 matplotlib.lines.Line2D([], [], color="#bbbbbb", lw=5, label="Pareto front")]
     key.legend(handles=handles, fontsize=9, ncol=2, loc="center")
     save(figure, folder, "accuracy-pareto", pdf=pdf)

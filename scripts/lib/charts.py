@@ -21,8 +21,8 @@ from PIL import Image  # noqa: E402
 
 from looks import LOOKS  # noqa: E402
 
-RED = "#D55E00"
-STRATEGIES, TESTS, STAGES, FIRST_SHOWN = LOOKS["strategies"], LOOKS["tests"], dict(LOOKS["stages"]), LOOKS["first"]
+RED, GREY = "#D55E00", "#666666"  # of contacts; of what is no row
+STRATEGIES, TESTS, STAGES, FIRST_SHOWN = LOOKS["strategies"], LOOKS["tests"], {key: colour for key, _, colour in LOOKS["stages"]}, LOOKS["first"]
 COLOURS = list(dict.fromkeys([look["colour"] for look in STRATEGIES.values()] + list(TESTS.values())))
 MARKERS = "osD^vPX*<>h"
 MOST_CURVES = 8  # of a chart, unless all are asked for

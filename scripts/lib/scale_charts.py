@@ -1,5 +1,5 @@
 """The charts of scripts/figures scale: a panel a scene, a curve a strategy. A star behind a name says that some of its times have a mark on the page."""
-from charts import (STAGES, label_panels, left_out, line_style, log_axis, marker, panels, plt, save, shown, spans_decades,
+from charts import (GREY, RED, STAGES, label_panels, left_out, line_style, log_axis, marker, panels, plt, save, shown, spans_decades,
                     ticks)
 from scale_record import count, per_triangle, row, series, speedups, stage, starred
 
@@ -108,7 +108,7 @@ def draw_step(record, folder, everything):
                                       if (asked := row(step, name)) and "ms" in asked], starred(record, "step", scene, name), **style(name))
         for step in steps:
             if step["colliding"]:
-                axes.axvspan(step["step"] / 1.19, step["step"] * 1.19, color="#D55E00", zorder=0, lw=0,
+                axes.axvspan(step["step"] / 1.19, step["step"] * 1.19, color=RED, zorder=0, lw=0,
                              alpha=0.2 * step["colliding"] / len(step["starts"]))
         axes.set_xscale("log")
         log_axis(axes.yaxis)
@@ -130,7 +130,7 @@ def draw_small(record, folder, everything):
             asked = [(step["moves"], own) for step in steps if (own := row(step, name)) and "ms" in own]
             ends += draw_curve(axes, [(moves, own["ms"]["total"]) for moves, own in asked], starred(record, "small", scene, name), **style(name))
         reading = [(step["moves"], min(found)) for step in steps if (found := [own["streaming_ms"] for own in step["strategies"] if "streaming_ms" in own])]
-        ends += draw_curve(axes, reading, "reading positions", color="#666666", ls=":")
+        ends += draw_curve(axes, reading, "reading positions", color=GREY, ls=":")
         axes.set_xscale("log")
         log_axis(axes.yaxis)
         ticks(axes, [step["moves"] for step in steps], lambda moves: f"{moves:g}")
@@ -145,8 +145,8 @@ def draw_threads(record, folder, everything):
 
     def draw(axes, scene):
         counts = [s["threads"] for s in record.of("threads", scene)]
-        axes.plot(counts, counts, lw=0.9, ls=":", color="#666666")
-        ends = [(counts[-1], counts[-1], "ideal", "#666666")]
+        axes.plot(counts, counts, lw=0.9, ls=":", color=GREY)
+        ends = [(counts[-1], counts[-1], "ideal", GREY)]
         for name in names:
             ends += draw_curve(axes, list(speedups(record, scene, name).items()), starred(record, "threads", scene, name), **style(name))
         if spans_decades(counts):
@@ -181,9 +181,9 @@ def draw_contacts(record, folder, most):
         axes.bar([x for x, _ in found], [r["ratio"] for _, r in found], wide, label=label, color=look["color"], **filling)
         for x, r in found:
             if "low" in r:
-                axes.plot([x] * 2, [r["low"], r["high"]], color="#666666", lw=1)
-    axes.axhline(1, color="#666666", lw=0.8)
-    axes.axhline(most, color="#666666", lw=0.8, ls=":")
+                axes.plot([x] * 2, [r["low"], r["high"]], color=GREY, lw=1)
+    axes.axhline(1, color=GREY, lw=0.8)
+    axes.axhline(most, color=GREY, lw=0.8, ls=":")
     axes.set_xticks(range(len(scenes)), scenes)
     axes.grid(axis="x", visible=False)
     axes.set_ylabel("time with contacts,\nover time without")

@@ -1,4 +1,5 @@
 """The page of how cost grows, from a record of `cscd scale`."""
+from looks import LOOKS
 from markdown import built, number, picture, table
 from scale_record import FIRST, MARK, count, mark, per_triangle, row, series, speedups, stage
 
@@ -10,7 +11,7 @@ NOWHERE = (f"Nowhere in this record, as far as these rules see: `drvbc_fast` los
            "of the triangles, or jumps from one size to the next; where another row is faster in every repetition; and where long "
            "steps, contacts or bones cost it far more than they should. Preparation and other rows are not judged.")
 CONTACTS = 2  # times what the plain scene takes: what contacts may cost
-STAGES = (("refit", "refit"), ("rv_update", "classification"), ("traversal", "traversal"), ("elementary", "elementary tests"))
+STAGES = [(key, title) for key, title, _ in LOOKS["stages"]]
 QUANTITIES = (("ms", stage("total")), ("preparation, ms", lambda prepared, asked: prepared["make_ms"]), ("BVOT", count("bvot")),
               ("PCTP", count("pctp")), ("bytes a triangle", per_triangle))
 

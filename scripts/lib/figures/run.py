@@ -12,7 +12,8 @@ records give the same bytes. Times of stages are on the page that `cscd report` 
 import pathlib
 import re
 
-from charts import label_ends, line_style, plt, save, spans_decades
+from charts import RED, label_ends, line_style, plt, save, spans_decades
+from looks import LOOKS
 from published import PAPER, over
 from records import document_of
 from script import made_folder, parser_of, program_option, refuse
@@ -35,7 +36,7 @@ def paper_mean(scene, counter, strategy):
     return None if ratio is None else over(drvbc, ratio, 2)
 
 
-def draw_counter(record, counter, label, folder, strategies):
+def draw_counter(record, counter, folder, strategies):
     """One curve a strategy over the intervals. Beside the curves, the mean that the paper gives."""
     rows = {s["name"]: s["counts"][counter] for s in record["strategies"] if counter in s["counts"]}
     names = [strategy for strategy in strategies if strategy in rows]
@@ -47,7 +48,7 @@ def draw_counter(record, counter, label, folder, strategies):
     figure, axes = plt.subplots(figsize=(7, 3.4))
     intervals = record["counted_intervals"]
     for touching in record["colliding"]:
-        axes.axvspan(touching - 0.5, touching + 0.5, color="#D55E00", alpha=0.12, lw=0, zorder=0)
+        axes.axvspan(touching - 0.5, touching + 0.5, color=RED, alpha=0.12, lw=0, zorder=0)
     for strategy in names:
         axes.plot(intervals, rows[strategy], lw=1.3, **line_style(strategy))
     values = [value for strategy in names for value in rows[strategy]] + [end for mean in means.values() for end in mean]
@@ -56,7 +57,7 @@ def draw_counter(record, counter, label, folder, strategies):
     if min(values) == 0:
         axes.set_ylim(bottom=0)
     axes.set_xlabel("interval" + ("; shaded: verified intervals with contacts" if record["colliding"] else ""))
-    axes.set_ylabel(label)
+    axes.set_ylabel(dict(LOOKS["counters"])[counter])
     axes.set_title(scene, fontsize=9)
     first, last = intervals[0], max(intervals[-1], intervals[0] + 1)
     axes.set_xlim(first, last)
@@ -94,5 +95,5 @@ def main():
         if not any(s["name"] == name for record in scenes.values() for s in record["strategies"]):
             refuse(f"--strategy {name}: in no record that was given; choose another")
     for record in scenes.values():
-        draw_counter(record, "bvot", "bounding volume overlap tests", folder, chosen)
-        draw_counter(record, "pctp", "potentially colliding triangle pairs", folder, chosen)
+        for counter in ("bvot", "pctp"):
+            draw_counter(record, counter, folder, chosen)

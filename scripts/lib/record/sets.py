@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 
+from looks import LOOKS
 from markdown import built, number, table
 from script import ROOT, SCENES, call, install, measured_program, new_results, output_of, parser_of, with_setup
 
@@ -77,7 +78,7 @@ def against_paper(scene, name, folder, smoke):
 
 def query_ms(row):
     """The median interval of a strategy's row in a record: what its stages take together, in the median repetition."""
-    stages = [row["ms"][stage] for stage in ("refit", "rv_update", "traversal", "elementary")]  # each [repetitions][intervals]
+    stages = [row["ms"][stage] for stage, *_ in LOOKS["stages"]]  # each [repetitions][intervals]
     passes = [[sum(parts) for parts in zip(*(stage[r] for stage in stages))] for r in range(len(stages[0]))]
     return statistics.median(statistics.median(interval) for interval in zip(*passes))
 
