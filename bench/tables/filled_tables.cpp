@@ -4,6 +4,7 @@
 
 #include "bench/output/data.h"
 #include "bench/tables/distinct.h"
+#include "core/base/split.h"
 
 namespace cscd::bench {
 namespace {

@@ -8,6 +8,7 @@
 #include "bench/output/schema.h"
 #include "bench/tables/claims.h"
 #include "bench/tables/tables_json.h"
+#include "core/base/split.h"
 #include "core/base/test_refusal.h"
 
 namespace cscd::bench {

@@ -6,6 +6,7 @@
 
 #include "bench/strategies/catalogue.h"
 #include "core/base/number_text.h"
+#include "core/base/split.h"
 
 namespace cscd::bench {
 namespace {
@@ -184,16 +185,6 @@ Measured best_of_baselines(ordered_json definition, const Record& record) {
 }
 
 }  // namespace
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text)
-    if (c == separator)
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  return parts;
-}
 
 Measured measure(const ordered_json& definition, const Record& record) {
   if (definition.value("strategy", "") == kBestBaseline) return best_of_baselines(definition, record);

@@ -53,7 +53,4 @@ Measured measure_over(const nlohmann::ordered_json& definition, const Record& re
 // kBestBaseline stands for. Empty where there is no figure.
 std::string text_of(const Measured& figure, bool with_interval);
 
-// "a+b" at '+'; "a.b" at '.'.
-std::vector<std::string> split(const std::string& text, char separator);
-
 }  // namespace cscd::bench

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/number_text.h"
+#include "core/base/split.h"
 
 namespace cscd::scenes {
 namespace {
@@ -63,17 +64,6 @@ void visit_values(Report& r, Visit&& visit) {
   visit("flipped_components", r.flipped_components);
   visit("components", r.components);
   visit("chosen_triangles", r.chosen_triangles);
-}
-
-std::vector<std::string> split(const std::string& line, char at) {
-  std::vector<std::string> words(1);
-  for (const char c : line) {
-    if (c == at)
-      words.emplace_back();
-    else
-      words.back() += c;
-  }
-  return words;
 }
 
 // Returns the length in bytes of the UTF-8 character at the start of `text`. Returns 0 where the text

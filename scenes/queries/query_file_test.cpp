@@ -11,11 +11,11 @@
 #include <map>
 #include <optional>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/split.h"
 #include "core/base/test_folder.h"
 #include "core/base/test_refusal.h"
 #include "core/elementary/certified/filtered_exact.h"
@@ -183,13 +183,6 @@ std::optional<std::filesystem::path> find_query_set() {
     if (std::filesystem::exists(at / "shared/queries/index.csv")) return at / "shared/queries";
     if (at == at.parent_path()) return std::nullopt;
   }
-}
-
-std::vector<std::string> split(const std::string& line, char separator) {
-  std::vector<std::string> cells;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, separator);) cells.push_back(cell);
-  return cells;
 }
 
 // One line of index.csv.

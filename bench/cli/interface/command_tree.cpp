@@ -85,8 +85,4 @@ std::vector<CommandWords> command_tree(const CLI::App& program) {
   return all;
 }
 
-std::string joined(const std::vector<std::string>& words, const std::string& between) {
-  return CLI::detail::join(words, between);
-}
-
 }  // namespace cscd::bench

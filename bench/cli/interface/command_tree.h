@@ -37,6 +37,4 @@ struct CommandWords {
 // Returns the program and all of its commands, each before those below it.
 std::vector<CommandWords> command_tree(const CLI::App& program);
 
-std::string joined(const std::vector<std::string>& words, const std::string& between);
-
 }  // namespace cscd::bench

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "bench/command_line/usage.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {

@@ -1,6 +1,7 @@
 #include "bench/cli/interface/shell_completion.h"
 
 #include "bench/command_line/usage.h"
+#include "scenes/base/joined.h"
 
 namespace cscd::bench {
 namespace {

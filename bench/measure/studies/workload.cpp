@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
-#include <sstream>
 
 #include "bench/inputs/input.h"
 #include "bench/strategies/catalogue.h"
 #include "core/base/error.h"
+#include "core/base/split.h"
 #include "scenes/hard/disturbance.h"
 
 namespace cscd::bench {
@@ -83,13 +83,6 @@ auto numbered(std::size_t count, const Make& make) {
   };
 }
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
 }  // namespace
 
 std::vector<Workload> scene_workloads(const std::string& scene, std::size_t every, std::size_t most) {
@@ -116,7 +109,7 @@ std::vector<Workload> open_workloads(const std::filesystem::path& set, std::size
   std::string line;
   std::getline(index, line);  // the names of the columns
   while (std::getline(index, line)) {
-    const std::vector<std::string> cells = split(line);
+    const std::vector<std::string> cells = split(line, ',');
     if (cells.size() < 7)
       throw InputError((set / "index.csv").string() +
                        ": a line has fewer than 7 columns; fetch the set anew");
