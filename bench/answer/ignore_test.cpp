@@ -13,7 +13,6 @@
 #include "core/detect/start/crossings.h"
 #include "core/detect/start/embedding.h"
 #include "core/detect/start/rest_crossings.h"
-#include "scenes/random/random_interval.h"
 
 // Answers that ignore something, held against all contacts of the reference without what is ignored.
 namespace cscd::bench {
@@ -136,17 +135,6 @@ void expect_right(Input& input, const IgnoreRequest& request, const Strategy& st
     seen.kept += kept.contacts.size();
     seen.crossing += ignored_pairs;
   }
-}
-
-Input random_input(std::uint64_t seed, bool torn) {
-  scenes::RandomInterval random =
-      torn ? scenes::make_torn_interval(seed) : scenes::make_random_interval(seed);
-  auto clip = std::make_unique<scenes::Clip>(std::move(random.clip));
-  TriangleMesh mesh(clip->header().triangles, clip->header().vertex_count);
-  const scenes::FrameView first = clip->load_frame(0);
-  std::vector<Vec3> reference(first.positions.begin(), first.positions.end());
-  std::optional<Rig> rig = scenes::rig_of(*clip);
-  return {"random", std::move(clip), std::move(mesh), std::move(reference), std::move(rig)};
 }
 
 // Two names of places of the surface, or one and all.

@@ -7,19 +7,9 @@
 
 #include "bench/harness/contestant.h"
 #include "bench/harness/measurement.h"
-#include "scenes/random/random_interval.h"
+#include "bench/inputs/test_inputs.h"
 
 namespace cscd::bench {
-
-// A random interval as the input of a run.
-inline Input random_input(std::uint64_t seed) {
-  auto clip = std::make_unique<scenes::Clip>(scenes::make_random_interval(seed).clip);
-  TriangleMesh mesh(clip->header().triangles, clip->header().vertex_count, "random interval");
-  const std::span<const Vec3> first = clip->frame(0).positions;
-  std::vector<Vec3> reference(first.begin(), first.end());
-  std::optional<Rig> rig = scenes::rig_of(*clip);
-  return {"random", std::move(clip), std::move(mesh), std::move(reference), std::move(rig)};
-}
 
 // A run of some rows on the one interval of an input, step by step.
 struct Trial {

@@ -8,8 +8,9 @@
 
 #include "bench/inputs/input.h"
 #include "core/mesh/test_shapes.h"
+#include "scenes/random/random_interval.h"
 
-// Inputs in memory, made from the frames that a test gives.
+// Inputs in memory: frames that a test gives, and random intervals.
 namespace cscd::bench {
 
 inline Input input_of(const test::Shape& shape, const std::vector<std::vector<Vec3>>& frames,
@@ -34,6 +35,16 @@ inline Input two_balls(std::initializer_list<double> shifts) {
   std::vector<std::vector<Vec3>> frames;
   for (const double x : shifts) frames.push_back(moved_part(balls, balls.positions.size() / 2, {x, 0, 0}));
   return input_of(balls, frames);
+}
+
+inline Input random_input(std::uint64_t seed, bool torn = false) {
+  auto clip = std::make_unique<scenes::Clip>(
+      (torn ? scenes::make_torn_interval(seed) : scenes::make_random_interval(seed)).clip);
+  TriangleMesh mesh(clip->header().triangles, clip->header().vertex_count, "random interval");
+  const std::span<const Vec3> first = clip->frame(0).positions;
+  std::vector<Vec3> reference(first.begin(), first.end());
+  std::optional<Rig> rig = scenes::rig_of(*clip);
+  return {"random", std::move(clip), std::move(mesh), std::move(reference), std::move(rig)};
 }
 
 }  // namespace cscd::bench
