@@ -53,7 +53,7 @@ class Maker {
  public:
   Maker(const BenchmarkPlan& plan, const std::function<void(std::size_t, std::size_t)>& progress)
       : plan_(plan), progress_(progress), all_(plan.small + plan.scenes.size() * plan.scene_intervals) {
-    make_folder();
+    make_folder(plan_.folder, "--out");
     // What stands in the way of any file is found before the work.
     manifest_ = open(kManifestName, ".json");
     truth_ = open(kTruthName, ".jsonl");
@@ -89,14 +89,6 @@ class Maker {
   }
 
  private:
-  void make_folder() const {
-    std::error_code error;
-    fs::create_directories(plan_.folder, error);
-    if (error)
-      throw InputError("folder " + plan_.folder.string() + ": cannot be made: " + error.message() +
-                       "; choose another with --out");
-  }
-
   std::unique_ptr<OutputFile> open(const char* name, std::string_view extension) const {
     return std::make_unique<OutputFile>(plan_.folder / name, plan_.force, extension);
   }

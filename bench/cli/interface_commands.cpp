@@ -42,8 +42,7 @@ void add_manual(CLI::App& app) {
       {"--force", &O::force, "replace files that exist"}};
   add_options<O>(*command, rows, *options);
   command->callback([options, &app] {
-    std::error_code ignored;  // where there is no folder then, the first page says so
-    std::filesystem::create_directories(options->folder, ignored);
+    make_folder(options->folder, "--out");
     const std::vector<CommandWords> tree = command_tree(app);
     for (const CommandWords& words : tree)
       OutputFile(std::filesystem::path(options->folder) / (manual_page_name(words) + ".1"), options->force,

@@ -142,14 +142,6 @@ bool run_one(const RunOptions& options, const ReplayRequest& request, OutputFile
   return record.verification.ok();
 }
 
-void make_folder(const std::filesystem::path& folder, const std::string& option) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error)
-    throw InputError("folder " + folder.string() + ": cannot be made: " + error.message() +
-                     "; choose another with " + option);
-}
-
 // The point caches of a folder. A folder without any may be that of one moving surface, which is one input.
 std::vector<std::string> caches_in(const std::filesystem::path& folder) {
   const std::vector<std::filesystem::path> caches = files_in(folder, {".h5"});

@@ -101,6 +101,14 @@ void OutputFile::commit() {
   close(stream);
 }
 
+void make_folder(const std::filesystem::path& folder, std::string_view option) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw InputError("folder " + folder.string() + ": cannot be made: " + error.message() +
+                     "; choose another with " + std::string(option));
+}
+
 std::string require_format(const std::filesystem::path& output, std::span<const std::string_view> known) {
   std::string extension = output.extension().string();
   for (char& c : extension)

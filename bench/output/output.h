@@ -63,6 +63,10 @@ class OutputFile {
 // Whether an output's name stands for standard output.
 bool is_standard_output(const std::filesystem::path& path);
 
+// Makes a folder where it is missing. Throws InputError, which says that `option` names it, where it cannot
+// be made.
+void make_folder(const std::filesystem::path& folder, std::string_view option);
+
 // The extension of an output's name decides the format that is written. Returns it in lower case with its
 // dot, one of `known` (".h5", ".glb", ...). Throws InputError, which lists the known ones, for any other
 // extension and for a name without one.

@@ -168,11 +168,7 @@ void report(const ReportOptions& options) {
   std::optional<OutputFile> output;
   const std::filesystem::path folder(options.folder), page = folder / "index.html";
   if (is_page) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error)
-      throw InputError("--out " + options.folder + ": the folder cannot be made (" + error.message() +
-                       "); choose another place");
+    make_folder(folder, "--out");
     output.emplace(page, options.force, ".html");
   }
   json shown = document_of(options, files, records, runs);
