@@ -74,7 +74,8 @@ const packed = (bytes) => deflateSync(bytes, { level: 9 }).toString("base64");
 // A page with an engine holds the viewer's elements, the engine, and the script of the worker that asks it.
 async function pageWithEngine(name, command) {
   const view = /<header>.*<\/footer>/s.exec(readFileSync(join(here, "src/view.html"), "utf8"))[0];
-  const held = { view, engine: packed(readFileSync(join(library, "cscd.wasm"))), worker: packed(await bundle(`${name}/worker.js`)) };
+  const { version } = JSON.parse(readFileSync(join(library, "package.json"), "utf8"));
+  const held = { view, version, engine: packed(readFileSync(join(library, "cscd.wasm"))), worker: packed(await bundle(`${name}/worker.js`)) };
   return pageOf(name, `${name}.js`, "three", { command, scripts: " 'wasm-unsafe-eval'", allowed: "worker-src blob:; ", held });
 }
 

@@ -178,7 +178,7 @@ std::string view_page(ViewRequest options) {
   require_viewer();
   require_sound(options);
   if (options.with_engine) require_page_answers(options);
-  const std::string with_engine = options.with_engine ? engine_page() : std::string();
+  const std::string with_engine = options.with_engine ? engine_page(version_number()) : std::string();
   if (options.strategies.size() > kMostStrategies)
     throw InputError("--strategy: a page compares up to " + std::to_string(kMostStrategies) +
                      " strategies; name fewer");

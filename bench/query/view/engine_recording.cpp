@@ -33,13 +33,18 @@ void append(std::vector<double>& to, std::span<const Vec3> pose) {
 
 }  // namespace
 
-std::string engine_page() {
+std::string engine_page(const std::string& version) {
   std::string page = page_beside_program();
-  if (page.find(kDataPlace) == std::string::npos)
+  const bool is_page = page.find(kDataPlace) != std::string::npos;
+  if (!is_page || page.find("data-version=\"" + version + "\"") == std::string::npos)
     throw InputError(
-        "--with-engine: there is no share/cscd/engine_view.html with the engine for WebAssembly beside this "
-        "program; make it with `scripts/check wasm BUILD`, where BUILD is the folder that the program was "
-        "built in, and install the program again if it was installed");
+        "--with-engine: " +
+        std::string(is_page
+                        ? "the share/cscd/engine_view.html beside this program is of another version"
+                        : "there is no share/cscd/engine_view.html with the engine for WebAssembly beside "
+                          "this program") +
+        "; make it with `scripts/check wasm BUILD`, where BUILD is the folder that the program was built in, "
+        "and install the program again if it was installed");
   return page;
 }
 

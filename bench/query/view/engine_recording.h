@@ -13,8 +13,8 @@ namespace cscd::bench {
 
 // The viewer's page with the engine for WebAssembly, without data. It is a file beside the program, because
 // compilers for WebAssembly are optional and the engine would make the program a tenth larger. Throws
-// InputError, saying how to make the file, where there is none.
-std::string engine_page();
+// InputError, saying how to make the file, where there is none, or one of another version than the program's.
+std::string engine_page(const std::string& version);
 
 // Throws InputError, naming the option, where the request says what the page's engine cannot be asked.
 void require_page_answers(const AnswerRequest& request);
