@@ -15,8 +15,16 @@ export class Captions {
     const verdict = byId("verdict");
     verdict.className = isMild(summary) ? "mild" : isBad(summary) ? "bad" : isOpen(summary) ? "" : "good";
     verdict.replaceChildren(element("span", `${markOf(summary)} `, "mark"), document.createTextNode(headline), element("span", others.map((sentence) => ` ${sentence}`).join(""), "others"));
+    byId("details").textContent = this.wayOut(summary);
     byId("answered").textContent = details;
     document.title = `${this.recording.header.name}: cscd view`;
+  }
+
+  // What to do about the place that the verdict speaks of first; nothing where no way out of it is known.
+  wayOut({ headline }) {
+    const worst = this.recording.events.find(({ number }) => number === headline?.event);
+    if (!worst?.out) return "";
+    return `To free the deepest point, move ${worst.name} ${lengthText(this.recording, Math.hypot(...worst.out))} along the green arrow.`;
   }
 
   sayInterval(strategy, interval, predicted) {
@@ -77,7 +85,7 @@ export class Captions {
       rows.push(element("b", `${many(offset[interval + 1] - offset[interval], "observer")}${strategy.has_patches ? "" : ": points, or bones as segments"}`));
     }
     if (chosen && chosen.event) rows.push(item(BLUE, "lines of the chosen place"));
-    if (chosen?.event?.out) rows.push(item(GREEN, `the deepest point is out where ${chosen.event.name} moves ${lengthText(this.recording, Math.hypot(...chosen.event.out))} this way`));
+    if (chosen?.event?.out) rows.push(item(GREEN, `${lengthText(this.recording, Math.hypot(...chosen.event.out))} to free the deepest point of ${chosen.event.name}`));
     if (chosen && chosen.contact !== undefined && mode !== "depth") rows.push(item(BLUE, "first feature, point and normal"), item(PINK, "second feature"));
     byId("legend").replaceChildren(...rows);
   }

@@ -93,7 +93,7 @@ export class MomentList {
     return box;
   }
 
-  // Shows the group of a chosen moment, and below the moment the contacts of its pair in that interval.
+  // Shows the group of a chosen moment, and below the moment the contacts of its pair in that interval, folded.
   unfold(chosen) {
     const group = chosen && !chosen.event && !chosen.truth ? groupOf(this.recording, this.strategy, chosen) : null;
     const key = group === null ? null : `${group} ${chosen.interval}`;
@@ -101,7 +101,7 @@ export class MomentList {
     this.unfolded = key;
     if (this.opened) this.opened.open = false;  // it was opened for another moment
     this.opened = null;
-    this.box.querySelectorAll(".one").forEach((row) => row.remove());
+    this.box.querySelector(".contacts")?.remove();
     const box = this.groups.get(group);
     if (!box) return;
     box.fill();
@@ -112,21 +112,25 @@ export class MomentList {
     for (let contact = strategy.contactOffset[chosen.interval]; contact < strategy.contactOffset[chosen.interval + 1]; ++contact)
       if (groupOf(recording, strategy, { contact }) === group) own.push(contact);
     const rows = own.slice(0, MOST_CONTACTS).map((contact) => {
-      const one = element("button", undefined, "one");
+      const one = element("button");
       one.moment = { interval: chosen.interval, contact };
       one.append(element("span", `${both(...namesOf(recording, strategy, one.moment), contactVerb(strategy, contact))} (${strategy.contact_kind[contact] === 0 ? "vertex, face" : "edge, edge"})`, "what"),
         element("span", `t = ${timeOf(strategy, one.moment).toFixed(4)}`, "when"));
       return one;
     });
-    if (own.length > rows.length) rows.push(element("p", `and ${many(own.length - rows.length, `more ${contactWord(strategy)}`)}`, "one"));
-    row.after(...rows);
+    if (rows.length === 0) return;
+    if (own.length > rows.length) rows.push(element("p", `and ${many(own.length - rows.length, `more ${contactWord(strategy)}`)}`));
+    const contacts = element("details", undefined, "contacts"), heading = element("summary");
+    heading.append(element("span", many(own.length, contactWord(strategy)), "what"));
+    contacts.append(heading, ...rows);
+    row.after(contacts);
   }
 
   mark(chosen) {
     for (const row of this.box.querySelectorAll("[aria-current]")) row.removeAttribute("aria-current");
     if (!chosen) return;
     const one = chosen.contact === undefined ? null
-      : Array.from(this.box.querySelectorAll("button.one")).find((row) => row.moment.contact === chosen.contact);
+      : Array.from(this.box.querySelectorAll("details.contacts[open] button")).find((row) => row.moment.contact === chosen.contact);
     const special = chosen.event || chosen.truth;
     const event = special && Array.from(this.box.querySelectorAll("button.event")).find((row) => (row.moment.event || row.moment.truth) === special);
     const box = special ? null : this.groups.get(groupOf(this.recording, this.strategy, chosen));

@@ -186,17 +186,17 @@ try {
     await settle();
     const far = await page.evaluate(() => window.cscd.stage.camera.position.toArray());
     // Every interval in which something meets is a moment of some pair, and a pair's heading says how many it has.
-    const group = page.locator("#list details").nth(Math.min(1, (await page.locator("#list details").count()) - 1));
-    if (!(await group.evaluate((box) => box.open))) await group.locator("summary").click();
-    const row = group.locator("button:not(.one)").last();
+    const group = page.locator("#list > details").nth(Math.min(1, (await page.locator("#list > details").count()) - 1));
+    if (!(await group.evaluate((box) => box.open))) await group.locator("> summary").click();
+    const row = group.locator("> button").last();
     await row.waitFor();
-    const heading = await group.locator("summary").textContent(), listed = await group.locator("button:not(.one)").count();
+    const heading = await group.locator("> summary").textContent(), listed = await group.locator("> button").count();
     require(listed === 1 ? !heading.includes(" moments, ") : heading.includes(`${listed.toLocaleString("en")} moments, `), `a pair with ${listed} moments says: ${heading}`);
     const held = await page.evaluate(() => new Set(Array.from(window.cscd.active.groups.values()).flat().map(({ interval }) => interval)).size);
     require(held === moments, `${held} of ${moments} moments belong to a pair`);
     // Folds at joints come last.
     const order = await page.evaluate(() => {
-      const { list, active } = window.cscd, keys = Array.from(list.groups.keys()), boxes = Array.from(document.querySelectorAll("#list details"));
+      const { list, active } = window.cscd, keys = Array.from(list.groups.keys()), boxes = Array.from(document.querySelectorAll("#list > details"));
       return boxes.map((box) => active.folds.has(keys.find((key) => list.groups.get(key).details === box)));
     });
     require(order.lastIndexOf(false) < order.indexOf(true) || !order.includes(true), `folds at joints are not listed last: ${order}`);
@@ -211,10 +211,13 @@ try {
     require(Math.hypot(...far.map((x, i) => x - arrived.moved[i])) > 0.1 * arrived.radius, "a contact in the list does not move the camera");
     require(arrived.off < 0.01 * arrived.radius, "the camera does not look at the contact");
     require(different(whole, await look()) > 100, "a contact in the list does not change the picture");
-    require(await row.getAttribute("aria-current") || (await page.locator("#list button.one[aria-current]").count()) > 0, "the list does not mark the chosen contact");
-    const one = page.locator("#list button.one").last();
+    require(await row.getAttribute("aria-current") || (await page.locator("#list .contacts button[aria-current]").count()) > 0, "the list does not mark the chosen contact");
+    const one = page.locator("#list .contacts button").last();
     if (await one.count()) {
+      require(!(await one.isVisible()), "the contacts of a moment are not folded");
+      await page.click("#list .contacts summary");
       await one.click();
+      require((await one.getAttribute("aria-current")) === "true", "the list does not mark a chosen contact");
       await settle();
       const pinned = await page.evaluate(() => [window.cscd.pinned.t, window.cscd.recording.strategies[window.cscd.strategy].contact_time[window.cscd.chosen.contact] / 65535]);
       require(pinned[0] === pinned[1], "the surface is not shown at the contact's time");
@@ -238,6 +241,11 @@ try {
   }
 
   // What lies in itself is listed, and a click leads to where it is deepest, in colours of its depth.
+  const wayOut = await page.evaluate(() => {
+    const { recording, active } = window.cscd, worst = recording.events.find(({ number }) => number === active.summary.headline?.event);
+    return { mover: worst?.out ? worst.name : null, said: document.getElementById("details").textContent };
+  });
+  require(wayOut.mover === null ? wayOut.said === "" : wayOut.said.includes(`move ${wayOut.mover} `), `the way out says ${JSON.stringify(wayOut)}`);
   const events = await page.evaluate(() => window.cscd.recording.events.map(({ deepest, time }) => deepest + time));
   require((await page.locator("button.event").count()) === Math.min(10, events.length), "not every event is listed");
   if (events.length > 0) {
