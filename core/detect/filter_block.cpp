@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/elementary/question/filter.h"
+#include "core/geometry/sideways.h"
 #include "core/geometry/triple_product_lanes.h"
 
 namespace cscd {

@@ -12,8 +12,8 @@
 namespace cscd {
 
 // Appends to `left`, in order, the pairs that the non-penetration filter and directions in a plane cannot
-// prove apart. Eight pairs are treated at a time in vector code; never_coplanar() and never_meet_in_plane()
-// are the scalar twins.
+// prove apart. Eight pairs are treated at a time in vector code; never_coplanar() and
+// test::never_meet_in_plane() are the scalar twins.
 void filter(const TriangleMesh& mesh, const Motion& motion, std::span<const FeaturePair> pairs,
             std::vector<FeaturePair>& left);
 // Does the same for everything that pairs of triangles carry, with all that two triangles carry at once. If

@@ -7,7 +7,7 @@
 
 #include "core/elementary/catalogue.h"
 #include "core/elementary/exact/exact.h"
-#include "core/elementary/question/filter.h"
+#include "core/elementary/question/test_filter.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {
@@ -42,7 +42,9 @@ TEST(FilterBlock, SaysOfEveryPairWhatItsScalarTwinSays) {
       }                              // at the other scales products leave the range
     pairs.resize(pairs.size() - 3);  // the last block is short
     for (const FeaturePair& pair : pairs) {
-      const auto says = [](const auto& query) { return never_coplanar(query) || never_meet_in_plane(query); };
+      const auto says = [](const auto& query) {
+        return never_coplanar(query) || test::never_meet_in_plane(query);
+      };
       const bool apart = pair.kind == FeaturePair::Kind::vertex_face
                              ? says(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}))
                              : says(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}));

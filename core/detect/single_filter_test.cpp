@@ -5,7 +5,7 @@
 
 #include "core/detect/filter_block.h"
 #include "core/elementary/catalogue.h"
-#include "core/elementary/question/filter.h"
+#include "core/elementary/question/test_filter.h"
 #include "core/mesh/test_shapes.h"
 
 namespace cscd {
@@ -13,7 +13,9 @@ namespace {
 
 // Returns the places of two triangles that the scalar functions of the filter keep.
 CarriedPlaces kept(const TriangleMesh& mesh, const Motion& motion, const TrianglePair& pair) {
-  const auto drops = [](const auto& query) { return never_coplanar(query) || never_meet_in_plane(query); };
+  const auto drops = [](const auto& query) {
+    return never_coplanar(query) || test::never_meet_in_plane(query);
+  };
   unsigned places = 0;
   for (std::size_t k = 0; k < 15; ++k) {
     const FeaturePair features = carried(mesh, pair, k);

@@ -2,7 +2,6 @@
 
 #include "core/geometry/bernstein.h"
 #include "core/geometry/feature_motion.h"
-#include "core/geometry/sideways.h"
 
 // The deforming non-penetration filter (Tang, Manocha and Tong, I3D 2010; section 7.1 of the paper). Its
 // "apart" is a proof (rule certain-sign, core/soundness.md); otherwise it says nothing.
@@ -12,9 +11,10 @@
 // implementation differs from the published filter in one respect: each coefficient has to exceed a forward
 // error bound. It takes about 120 floating-point operations.
 //
-// The second part finds features that come into one plane but stay apart in it (sideways.h). The published
-// filter has no such part. It is made for surfaces that lie on one another, as where a rope rests on itself:
-// there many pairs of features come into one plane.
+// The second part finds features that come into one plane but stay apart in it (core/geometry/sideways.h).
+// The published filter has no such part. It is made for surfaces that lie on one another, as where a rope
+// rests on itself: there many pairs of features come into one plane. core/detect/filter_block.cpp asks both
+// parts about eight pairs at a time.
 namespace cscd {
 
 // The vector from one moving point to another.
@@ -36,25 +36,6 @@ inline BernsteinCubic coplanarity(const MovingEdgeEdge& q) {
 template <class Query>
 bool never_coplanar(const Query& query) {
   return certain_sign(coplanarity(query)) != 0;
-}
-
-// Calls apart_sideways (sideways.h) for one query, given as three points seen from the fourth.
-inline bool stay_apart_sideways(const MovingVector (&seen)[3], bool vertex_face) {
-  SeenFromFirst<double> p;
-  for (int k = 0; k < 3; ++k)
-    for (int i = 0; i < 3; ++i) p[k][0][i] = seen[k].start[i], p[k][1][i] = seen[k].end[i];
-  return apart_sideways(p, vertex_face);
-}
-// The second part of the filter. True proves that the features never touch.
-inline bool never_meet_in_plane(const MovingVertexFace& q) {
-  const MovingPoint& from = q.corner[0];
-  return stay_apart_sideways(
-      {difference(from, q.corner[1]), difference(from, q.corner[2]), difference(from, q.vertex)}, true);
-}
-inline bool never_meet_in_plane(const MovingEdgeEdge& q) {
-  const MovingPoint& from = q.first[0];
-  return stay_apart_sideways(
-      {difference(from, q.first[1]), difference(from, q.second[0]), difference(from, q.second[1])}, false);
 }
 
 }  // namespace cscd

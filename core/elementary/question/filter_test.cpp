@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "core/elementary/exact/exact.h"
+#include "core/elementary/question/test_filter.h"
 #include "core/elementary/question/test_queries.h"
 
 namespace cscd {
 namespace {
 
 using test::FourMovingPoints;
+using test::never_meet_in_plane;
 using test::query_of;
 using test::QueryMaker;
 using test::still;
