@@ -2,6 +2,7 @@
 
   scripts/find-faults sanitizers                 runs scripts/test --sanitize and scripts/check threads, and shows what they print
   scripts/find-faults sanitizers --from RECORD   asks those tests again that failed in a record, and runs scripts/check threads
+  scripts/find-faults sanitizers --rooms core,scenes/import    asks only tests of these folders, and runs scripts/check threads
 
 The record is results/trust/DATE-sanitizers.json. From nothing it takes about two hours on 2 idle cores. Exit status: 0 if nothing was found, 1 otherwise, 2 if it could not run.
 """
@@ -12,6 +13,7 @@ import subprocess
 
 from records import read_json
 from script import ROOT, parser_of, refuse
+from tracked import tracked_files
 from trust import write_record
 
 FAILED = "Tests that fail under address and undefined"
@@ -28,11 +30,28 @@ def run(command):
     return process.returncode, lines
 
 
+def build_and_ask(folder, targets, which):
+    """Builds these targets below `folder`, or all where none is named, and runs the tests that ctest selects by `which`."""
+    return run(f'source scripts/lib/setup.sh; root=$PWD; build {folder} sanitize gcc {" ".join(targets)} && '
+               f'ctest --test-dir {folder} --output-on-failure -j "$(nproc)" {which}')[1]
+
+
 def again(names):
-    """Builds what has changed, and runs these tests alone."""
+    """Runs these tests alone."""
     pattern = shlex.quote("^(" + "|".join(name.replace(".", "[.]") for name in names) + ")( |$)")
-    return run('source scripts/lib/setup.sh; root=$PWD; build build-test-gcc-sanitize sanitize gcc && '
-               f'ctest --test-dir build-test-gcc-sanitize --output-on-failure -j "$(nproc)" -R {pattern}')[1]
+    return build_and_ask("build-test-gcc-sanitize", [], f"-R {pattern}")
+
+
+def of_rooms(folders):
+    """Builds the test programs of these folders and of those below them, and runs what they hold. They have a build folder
+    of their own, because ctest runs all that is built in one."""
+    paths = [path.relative_to(ROOT) for path in tracked_files() if path.name.endswith("_test.cpp")]
+    rooms = {path.parent.as_posix() for path in paths}
+    for folder in folders:
+        if not any(f"{room}/".startswith(f"{folder}/") for room in rooms):
+            refuse(f"--rooms {folder}: no test lies in a folder of that name; name folders as in core/session,scenes")
+    targets = sorted(room.replace("/", "_") + "_test" for room in rooms if any(f"{room}/".startswith(f"{folder}/") for folder in folders))
+    return build_and_ask("build-sanitize-rooms", targets, "-E _NOT_BUILT")
 
 
 def number(pattern, lines):
@@ -57,6 +76,10 @@ def suite(options):
             refuse(f"{options.origin}: no test failed there")
         lines = again(names)
         says = f"The tests that had failed in `{options.origin.name}`, after something was mended."
+    elif options.rooms:
+        lines = of_rooms(options.rooms)
+        says = (f"The tests of {', '.join(options.rooms)} alone under AddressSanitizer, UndefinedBehaviorSanitizer and the assertions of "
+                "libstdc++, any finding fatal.")
     else:
         lines = run("scripts/test --sanitize")[1]
         says = "The whole suite under AddressSanitizer, UndefinedBehaviorSanitizer and the assertions of libstdc++, any finding fatal."
@@ -68,8 +91,9 @@ def suite(options):
     figures = [["tests under address and undefined", of], ["of them failed", len(failed)],
                ["of them skipped: too long under sanitizers, or another program is not there",
                 sum("***Skipped" in line for line in lines)]]
-    return says, figures, failed, f"{len(failed)} of {of} tests{' that had failed' if options.origin else ''} fail under " \
-                                  f"address and undefined{' still' if options.origin else ''}"
+    asked = " that had failed" if options.origin else f" of {', '.join(options.rooms)}" if options.rooms else ""
+    return says, figures, failed, (f"{len(failed)} of {of} tests{asked} fail under address and undefined"
+                                   f"{' still' if options.origin else ''}")
 
 
 def add_threads(record):
@@ -91,11 +115,14 @@ def add_threads(record):
 
 def main():
     parser = parser_of(__doc__)
-    parser.add_argument("--from", dest="origin", type=pathlib.Path, metavar="RECORD")
+    which = parser.add_mutually_exclusive_group()
+    which.add_argument("--from", dest="origin", type=pathlib.Path, metavar="RECORD")
+    which.add_argument("--rooms", type=lambda text: text.rstrip("/").split(","), default=[], metavar="FOLDERS")
     options = parser.parse_args()
     says, figures, failed, headline = suite(options)
     record = {"kind": "sanitizers", "title": "Sanitizers", "says": says, "headline": headline, "figures": figures,
-              "command": "scripts/find-faults sanitizers" + (f" --from {options.origin.name}" if options.origin else ""),
+              "command": "scripts/find-faults sanitizers" + (f" --from {options.origin.name}" if options.origin else "")
+                         + (f" --rooms {','.join(options.rooms)}" if options.rooms else ""),
               "tables": [{"title": FAILED, "head": ["test"], "text_columns": 1, "rows": [[name] for name in failed]}]}
     status = add_threads(record)
     write_record(record)
