@@ -15,7 +15,7 @@ export class Captions {
     const verdict = byId("verdict");
     verdict.className = isMild(summary) ? "mild" : isBad(summary) ? "bad" : isOpen(summary) ? "" : "good";
     verdict.replaceChildren(element("span", `${markOf(summary)} `, "mark"), document.createTextNode(headline), element("span", others.map((sentence) => ` ${sentence}`).join(""), "others"));
-    byId("details").textContent = this.wayOut(summary);
+    byId("way-out").textContent = this.wayOut(summary);
     byId("answered").textContent = details;
     document.title = `${this.recording.header.name}: cscd view`;
   }

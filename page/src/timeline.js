@@ -22,14 +22,15 @@ export class Timeline {
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
-  // The intervals in which most goes wrong, as the summary of an answer ranks them.
-  static worst(strategy, most = 3) {
+  // Where the marks stand: where the deepest places are deepest, or else in the middle of the intervals in which most touches.
+  static worst({ events }, strategy, most = 3) {
+    if (events.length > 0) return events.slice(0, most).map(({ deepest, time }) => deepest + time);
     const rank = Array.from(strategy.verdict, (_, i) => i).filter((i) => strategy.contacts[i] || strategy.start_pairs[i]);
     rank.sort((a, b) => strategy.start_pairs[b] - strategy.start_pairs[a] || strategy.contacts[b] - strategy.contacts[a] || a - b);
     const chosen = [];
     for (const i of rank)  // neighbours of a moment say the same as the moment
       if (chosen.length < most && chosen.every((other) => Math.abs(other - i) > Math.max(2, strategy.verdict.length / 25))) chosen.push(i);
-    return chosen;
+    return chosen.map((i) => i + 0.5);
   }
 
   show(strategy, position) {
@@ -101,8 +102,8 @@ export class Timeline {
     if (count > 0) this.label(context, many(count, strategy.close ? "close pair" : "contact") + (crosses ? " and crossings" : ""), 1, top, colour("--text"));
     this.drawDepth(context, x, top, bottom, colour("--text"));
     context.fillStyle = colour("--text");
-    for (const i of Timeline.worst(strategy)) {
-      const at = x(i + 0.5);
+    for (const position of Timeline.worst(recording, strategy)) {
+      const at = x(position);
       context.beginPath();
       context.moveTo(at - 5, 1);
       context.lineTo(at + 5, 1);
