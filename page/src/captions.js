@@ -11,32 +11,40 @@ export class Captions {
   constructor(recording) { this.recording = recording; }
 
   // The sentences are made where the answers are (bench/answer/answer_text.h).
-  sayVerdict({ summary, sentences: [headline, ...others], details }) {
+  sayVerdict(strategy) {
+    const { summary, sentences: [headline, ...others], details } = strategy;
     const verdict = byId("verdict");
     verdict.className = isMild(summary) ? "mild" : isBad(summary) ? "bad" : isOpen(summary) ? "" : "good";
     verdict.replaceChildren(element("span", `${markOf(summary)} `, "mark"), document.createTextNode(headline), element("span", others.map((sentence) => ` ${sentence}`).join(""), "others"));
-    byId("way-out").textContent = this.wayOut(summary);
+    byId("what-to-do").textContent = this.whatToDo(strategy);
     byId("answered").textContent = details;
     document.title = `${this.recording.header.name}: cscd view`;
   }
 
-  // What to do about the place that the verdict speaks of first; nothing where no way out of it is known.
-  wayOut({ headline }) {
-    const worst = this.recording.events.find(({ number }) => number === headline?.event);
-    if (!worst?.out) return "";
-    return `To free the deepest point, move ${worst.name} ${lengthText(this.recording, Math.hypot(...worst.out))} along the green arrow.`;
+  // What frees the place that the verdict speaks of first, beside the size of the whole, which tells how bad it is; nothing where no way
+  // out is known.
+  whatToDo({ summary, close }) {
+    const worst = this.recording.events.find(({ number }) => number === summary.headline?.event);
+    if (worst?.out) {
+      const way = lengthText(this.recording, Math.hypot(...worst.out));
+      return `To free the deepest point, move ${worst.name} ${way} along the green arrow; the whole is ${lengthText(this.recording, this.recording.length)} long.`;
+    }
+    return isMild(summary) && !close && this.recording.events.length === 0 ? "It crosses itself at no frame." : "";
   }
 
+  // In the view, what happens in an interval; the numbers that go with it are for the list of numbers.
   sayInterval(strategy, interval, predicted) {
     const contacts = strategy.contacts[interval], pairs = strategy.start_pairs[interval], text = [];
-    if (pairs > 0) text.push(`${many(pairs, "pair")} of triangles cross at this start`);
-    if (contacts > 0) text.push(`${many(contacts, contactWord(strategy))} in this interval`);
-    if (predicted && !this.recording.truths) text.push("in the simulator's step, before it resolves them");
+    if (pairs > 0) text.push("crosses itself here");
+    else if (contacts > 0) text.push(strategy.close ? "comes close before the next frame" : "touches itself before the next frame");
+    if (predicted && !this.recording.truths) text.push("in the simulator's step, before contacts are resolved");
     const truth = this.recording.truths?.get(interval);
     if (truth) text.push(truth.text);
     byId("moment").textContent = text.join(" · ");
     const facts = [["interval", String(interval + this.recording.clip.first_interval)], ["verdict", VERDICTS[strategy.verdict[interval]]],
       ["answered by", strategy.answered_by[strategy.answerer[interval]] + (strategy.proven[interval] ? ", proven" : ", not proven")]];
+    if (pairs > 0) facts.push(["pairs of triangles that cross at its start", pairs.toLocaleString("en")]);
+    if (contacts > 0) facts.push([`${contactWord(strategy)}s in it`, contacts.toLocaleString("en")]);
     if (strategy.pairs)  // the library does not count its work
       facts.push(["triangle pairs left by culling", strategy.pairs[interval].toLocaleString("en")], ["elementary tests", strategy.tests[interval].toLocaleString("en")]);
     if (this.recording.truths) facts.push(["true motion", (this.recording.truths.get(interval)?.verdict ?? "clear").replaceAll("_", " ")]);

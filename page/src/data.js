@@ -137,6 +137,7 @@ export function recordingOf(header, arrays) {
   return {
     header, clip, intervals, places, ends, endOfInterval, middle,
     frameBoxes: frameBoxes.map((x, i) => x - middle[Math.floor(i / 2) % 3]),
+    length: side * Math.max(...[0, 2, 4].map((i) => frameBoxes[i + 1] - frameBoxes[i])),  // of the first frame, in the scene's unit
     texts: header.texts,
     corners: arrays.corners,
     place: arrays.place,

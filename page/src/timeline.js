@@ -39,10 +39,11 @@ export class Timeline {
     this.draw();
   }
 
-  // A line that is as high as what lies deepest in another piece of the surface at each start.
+  // A line that is as high as what lies deepest in another piece of the surface at each start; folds at joints only where there is
+  // nothing else.
   drawDepth(context, x, top, bottom, colour) {
-    const { events, intervals } = this.recording, depth = new Float64Array(intervals);
-    for (const { first, depths } of events) depths.forEach((d, i) => { depth[first + i] = Math.max(depth[first + i], d); });
+    const { events, intervals } = this.recording, depth = new Float64Array(intervals), others = events.filter(({ atJoint }) => !atJoint);
+    for (const { first, depths } of others.length > 0 ? others : events) depths.forEach((d, i) => { depth[first + i] = Math.max(depth[first + i], d); });
     const most = depth.reduce((a, b) => Math.max(a, b), 0);
     if (most === 0) return;
     this.label(context, lengthText(this.recording, most) + " deep", 0, top, colour);
