@@ -145,6 +145,42 @@ TEST(SelfCollision, RemembersNothingThatChangesAnAnswer) {
   EXPECT_GT(crossing, steps / 10);
 }
 
+// Whether a step is free and how far it is free do not depend on what touched before, with and without a
+// thickness, and where what goes on is left out. Mutations: a pair that touches later in the step ends it at
+// its start; what touched is asked though it is left out; the ends of other vertices are not looked at.
+TEST(SelfCollision, KnowsWhatTouchedInTheStepBefore) {
+  std::size_t free = 0, at_start = 0, later = 0, steps = 0;
+  for (std::uint64_t seed = 1; seed <= 36; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const SceneStep step(seed);
+    SelfCollision::Options options;
+    if (seed % 3 == 1) options.thickness = 0.05;
+    options.exclude.ongoing = seed % 3 == 2;
+    SelfCollision body(step.faces, step.start, options);
+    std::mt19937_64 random(seed);
+    Rows from = step.start;
+    for (int i = 0; i < 30; ++i, ++steps) {
+      const double share = std::uniform_real_distribution(-0.1, 0.3)(random);
+      const Rows to = from + share * (step.end - step.start);
+      SelfCollision fresh(step.faces, step.start, options);
+      const double expected = fresh.largest_step(from, to, 1);
+      EXPECT_EQ(body.is_free(from, to), fresh.is_free(from, to)) << i;
+      EXPECT_NEAR(body.largest_step(from, to, 1), expected, 0x1p-40) << i;  // the time to a share of 2^-42
+      free += expected == 1;
+      at_start += expected == 0;
+      later += expected > 0 && expected < 1;
+      Rows broken = to;
+      broken(static_cast<Eigen::Index>(random() % static_cast<std::size_t>(to.rows())), 1) = std::nan("");
+      EXPECT_THROW(body.is_free(from, broken), std::invalid_argument);
+      EXPECT_THROW(body.largest_step(broken, to, 1), std::invalid_argument);
+      if (i % 4 > 0) from = to;
+    }
+  }
+  EXPECT_GT(free, steps / 20);
+  EXPECT_GT(at_start, steps / 20);
+  EXPECT_GT(later, steps / 20);
+}
+
 // Sessions on several threads over one const mesh answer as each would alone.
 TEST(SelfCollision, SessionsOnSeveralThreadsShareOneMesh) {
   const ElementaryTest& exact = *find_elementary_test("filtered_exact");

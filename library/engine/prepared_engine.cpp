@@ -11,6 +11,7 @@
 #include "core/detect/contact_geometry.h"
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
+#include "core/geometry/feature_motion.h"
 #include "core/mesh/mean_edge.h"
 #include "core/session/vertex_bounds.h"
 #include "library/engine/paths.h"
@@ -136,6 +137,9 @@ void PreparedEngine::move(std::size_t obstacle, const Positions& start, const Po
 void PreparedEngine::step(const Motion& motion, bool first, Session::Sought sought) {
   step_itself(first ? first_ : all_, motion, options_.exclude.ongoing ? Session::Sought::contacts : sought);
   if (options_.exclude.ongoing && answer_.start.total > 0) leave_out_ongoing(motion, first);
+  const std::vector<cscd::Contact>& own = answer_.found.contacts;
+  const auto touched = std::ranges::find(own, Verdict::contact, &cscd::Contact::verdict);
+  if (touched != own.end()) touched_first_ = touched->pair;
   if (!obstacles_) return;
   obstacles_->step(motion, first, sought == Session::Sought::time, options_.check_start, touched_, crossed_);
   const std::optional<double> earliest = time();
@@ -171,16 +175,40 @@ void PreparedEngine::contacts(const Motion& motion, bool first, Answer& out) {
                        [](const Contact& a, const Contact& b) { return a.time < b.time; });
 }
 
-// A solver that looks for a free step asks about one start many times. From a start that crosses itself
-// none is free, which is known after the first.
+// A solver that looks for a free step asks about one start many times, and about small steps one after
+// another. From a start that crosses itself none is free, which is known after the first. What touched first
+// in one step often touches in the next, and is close for many steps where there is a thickness: one pair
+// that touches says that a step is not free, and one that does so at the start says when the step ends.
 std::optional<double> PreparedEngine::free_until(const Motion& motion, Session::Sought sought) {
   if (same_bits(motion.start(), crossing_start_)) {
     check_finite(motion.end(), "end positions");
     return 0;
   }
+  const std::optional<double> again = touches_again(motion);
+  if (again && (sought == Session::Sought::any_contact || *again <= 0)) {
+    check_finite(motion.start(), "start positions");
+    check_finite(motion.end(), "end positions");
+    return again;
+  }
   step(motion, true, sought);
   if (answer_.start.total > 0) crossing_start_ = copy_of(motion.start());
   return answer_.start.total + crossed_.total > 0 ? 0 : time();
+}
+
+std::optional<double> PreparedEngine::touches_again(const Motion& motion) const {
+  // What crosses and goes on is left out of a step by its own start.
+  if (!touched_first_ || options_.exclude.ongoing) return std::nullopt;
+  const FeaturePair& pair = *touched_first_;
+  for (const VertexId v : vertices_of(mesh_, pair))
+    if (!motion.start()[+v].allFinite() || !motion.end()[+v].allFinite()) return std::nullopt;
+  const auto ask = [&](const auto& query) {
+    return is_thick() ? elementary().answer_close(query, thickness_.of(mesh_, pair))
+                      : elementary().answer(query);
+  };
+  const cscd::Answer answer = pair.kind == FeaturePair::Kind::vertex_face
+                                  ? ask(vertex_face(mesh_, motion, VertexId{pair.a}, TriangleId{pair.b}))
+                                  : ask(edge_edge(mesh_, motion, EdgeId{pair.a}, EdgeId{pair.b}));
+  return answer.verdict == Verdict::contact ? std::optional(answer.time) : std::nullopt;
 }
 
 double PreparedEngine::largest_step(const Positions& start, const Positions& end, double safety) {

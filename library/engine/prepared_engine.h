@@ -97,6 +97,9 @@ class SelfCollision::Engine::Prepared final : public SelfCollision::Engine {
   // Returns the time of a contact, the first one if that is `sought`; 0 if something crosses at the start;
   // null if nothing does.
   std::optional<double> free_until(const Motion& motion, Session::Sought sought);
+  // Returns the time at which the feature pair that touched first in an earlier step touches in this one;
+  // null if it does not, and where its positions are not finite.
+  std::optional<double> touches_again(const Motion& motion) const;
 
   void step_itself(Question& question, const Motion& motion, Session::Sought sought);
   std::size_t leave_out();
@@ -122,6 +125,7 @@ class SelfCollision::Engine::Prepared final : public SelfCollision::Engine {
   std::optional<CrossingSearch> crossing_search_;
   // The last one that free_until() met.
   std::vector<Vec3> crossing_start_;
+  std::optional<FeaturePair> touched_first_;  // in the last step in which something of the mesh did
 };
 
 }  // namespace cscd
