@@ -73,7 +73,9 @@ export class Marker {
     marks.setContacts(points, weights);
     marks.setChosen(at);
     const isChosen = (event) => Boolean(chosen && chosen.event && chosen.event.number === event);
-    const crossings = this.curves(interval, (event) => !isChosen(event)), crossingGlow = this.curves(interval, () => true);
+    // Lines of other events are faint beside those of a chosen one.
+    const crossings = this.curves(interval, (event) => !isChosen(event)), crossingGlow = this.curves(interval, (event) => !chosen?.event || isChosen(event));
+    marks.crossings.material.opacity = chosen?.event ? 0.45 : 1;
     first.push(...this.curves(interval, isChosen));
     for (const [name, numbers] of Object.entries({ others, first, second, normals: normal, crossings, crossingGlow, way, wayGlow: way })) marks.setLines(name, numbers);
   }

@@ -9,6 +9,8 @@ import re
 from markdown import number, table
 from records import document_of, read_json
 from results_index import environment_of, first_record
+from scale_page import small_step_text
+from scale_record import Record
 from script import ROOT, answer_of, output_of, refuse
 from study_parts import STUDIES, words
 from tracked import tracked_files
@@ -20,7 +22,7 @@ class Results:
     """The newest records of a kind, the document of their figures, and where a page finds them."""
 
     def __init__(self, kind, page, program):
-        self.folder = newest(kind)
+        self.folder, self.program = newest(kind), program
         self.link = "../" * page.count("/") + self.folder.relative_to(ROOT).as_posix()
         report = document_of(program, *records_in(self.folder))
         self.stages = {record["scene"]: {row["name"]: row["stages"] for row in record["strategies"]} for record in report["records"]
@@ -48,6 +50,14 @@ def picture(full):
     return f"![a hand at rest, an interval in which a finger touches itself, and where]({full.link}/contact.png)\n"
 
 
+def small_steps(program):
+    """What small steps take, as a line; none where there is no record of them."""
+    folder = newest("solver", False)
+    small = small_step_text(Record(folder / "scale.json.gz", program)) if folder else ""
+    return [f"A small step, as a solver asks for by the hundred, costs what moves: one {small} ([small steps]({folder.relative_to(ROOT)}/scale.md))."] \
+        if small else []
+
+
 def door(starts, full):
     """What a visitor wants to know first, in a few rows."""
     return starts.list_of("door") + "\n" + "\n".join([
@@ -55,6 +65,7 @@ def door(starts, full):
         "interval. In a clip with contacts some intervals touch, and those take longer. A start that may cross itself is answered by "
         "`drvbc_fast_complete`. *Times faster* compares medians of methods that are asked the same: `drvbc_fast_all` and the others for all "
         "contacts, `drvbc_fast` and DRVBC for the first one. `cscd list mcd` explains any of these names.",
+        *small_steps(starts.program),
         f"{starts.measured}; {starts.threads}; [medians]({starts.link}/tables.md), "
         "[the third row](bench/paper.md#the-price-of-a-start).",
         f"[The paper's tables, measured and published]({full.link}/tables.md); [its claims]({full.link}/claims.md)."]) + "\n"

@@ -379,6 +379,28 @@ def mark_part(record):
             "", *lines, ""]
 
 
+SMALL_STEP = {"series": "substeps", "moves": 0.01, "thickness": 0}
+
+
+def small_step(record):
+    """What a small step takes with a list of what is near, and what it takes without, in milliseconds by scene."""
+    steps = {scene: step for scene in record.scenes("small") for subject in record.of("small", scene) for step in subject["steps"]
+             if all(step[key] == value for key, value in SMALL_STEP.items())}
+    rows = {scene: [timed(step, name) for name in ("drvbc_fast_near", "drvbc_fast_complete")] for scene, step in steps.items()}
+    return {scene: [found["ms"]["total"] for found in of] for scene, of in rows.items() if all(of)}
+
+
+def small_step_text(record):
+    """In a sentence without its subject, how long small steps take, and how much longer they would without a list; nothing where a record
+    has none."""
+    times = small_step(record)
+    if not times:
+        return ""
+    near, ratios = sorted(ms for ms, _ in times.values()), sorted(without / ms for ms, without in times.values())
+    return (f"of {SMALL_STEP['moves']:g} mean edges takes {number(near[0])} to {number(near[-1])} ms on {', '.join(times)}, {number(ratios[0])} to "
+            f"{number(ratios[-1])} times less than the same method without its list of what is near")
+
+
 def summary(record):
     """The figures that a reader wants first, a line each."""
     names = record.names("size") or record.names("step") or record.names("contacts") or record.names("thickness") or record.names("small")
@@ -396,6 +418,8 @@ def summary(record):
         ratios = [f"{scene} {brief(*ratio)}" for scene in record.scenes("contacts") if (ratio := contact_ratio(record, scene, name))[0]]
         if ratios:
             text += [f"`{name}`, the median interval's time with contacts over that without: {', '.join(ratios)}."]
+    if small := small_step_text(record):
+        text += [f"A substep {small}."]
     return text
 
 
