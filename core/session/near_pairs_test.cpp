@@ -145,6 +145,43 @@ TEST_F(NearPairsTest, AnswerFromStartsThatAreNotKnown) {
   EXPECT_GT(by_list, 90);
 }
 
+// A strategy for known starts cannot find what is near. A complete one is prepared for that once there were
+// so many small steps that they have taken about as long. Mutation: the first small step prepares it.
+TEST(NearPairs, ComeAfterManySmallStepsFromKnownStarts) {
+  const test::Shape balls =
+      test::together(test::icosphere(2), test::moved(test::icosphere(2), {2.005, 0, 0}));
+  const TriangleMesh mesh = balls.mesh();
+  const StrategyInput setup{.mesh = mesh,
+                            .reference = balls.positions,
+                            .rig = nullptr,
+                            .elementary = *find_elementary_test("filtered_exact"),
+                            .first_only = true};
+  NearPairs near(mesh, balls.positions, {});
+  const auto session = [&](NearPairs* list) {
+    return Session("test", setup, kDrvbcFast, kDrvbcFastComplete, balls.positions,
+                   {.first = true, .keep_rest_crossings = true, .near = list});
+  };
+  Session with = session(&near), without = session(nullptr);
+  std::vector<Vec3> start = balls.positions;
+  StepAnswer a, b;
+  int before_first = 0, touching = 0;
+  for (int n = 0; n < 600; ++n) {
+    SCOPED_TRACE(n);
+    std::vector<Vec3> end = start;
+    for (std::size_t v = 0; v < end.size() / 2; ++v) end[v].x() += n < 550 ? 8e-6 : 8e-5;
+    with.step({start, end}, nullptr, a);
+    without.step({start, end}, nullptr, b);
+    ASSERT_EQ(told(a.found), told(b.found));
+    ASSERT_EQ(a.proven, b.proven);
+    before_first += near.anchors() == 0;
+    touching += !a.found.contacts.empty();
+    if (a.found.contacts.empty()) start = std::move(end);
+  }
+  EXPECT_GT(before_first, 200);
+  EXPECT_LT(before_first, 300);
+  EXPECT_GT(touching, 10);
+}
+
 // Pieces that turn far while they stay as they are near each other: one anchor serves many lists.
 TEST_F(NearPairsTest, FollowWhatTurns) {
   NearPairs near(*mesh_, shape_.positions, {});
