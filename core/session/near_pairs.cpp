@@ -114,8 +114,8 @@ void keep_one_of_each(std::vector<NearPair>& near) {
   std::ranges::sort(near, [&](const NearPair& a, const NearPair& b) {
     return std::tuple(triangles(a), b.low) < std::tuple(triangles(b), a.low);
   });
-  const auto rest = std::ranges::unique(near, {}, triangles);
-  near.erase(rest.begin(), rest.end());
+  const auto same = [&](const NearPair& a, const NearPair& b) { return triangles(a) == triangles(b); };
+  near.erase(std::unique(near.begin(), near.end(), same), near.end());
 }
 
 class NearCuller : public Culler {
