@@ -30,28 +30,32 @@ def run(command):
     return process.returncode, lines
 
 
-def build_and_ask(folder, targets, which):
-    """Builds these targets below `folder`, or all where none is named, and runs the tests that ctest selects by `which`."""
+def build_and_ask(rooms, which):
+    """Builds all tests, or those of some folders, and runs those that ctest selects by `which`. Tests of folders have a build folder
+    of their own, because ctest runs all that is built in one."""
+    folder, targets = ("build-sanitize-rooms", targets_of(rooms)) if rooms else ("build-test-gcc-sanitize", [])
     return run(f'source scripts/lib/setup.sh; root=$PWD; build {folder} sanitize gcc {" ".join(targets)} && '
                f'ctest --test-dir {folder} --output-on-failure -j "$(nproc)" {which}')[1]
 
 
-def again(names):
-    """Runs these tests alone."""
-    pattern = shlex.quote("^(" + "|".join(name.replace(".", "[.]") for name in names) + ")( |$)")
-    return build_and_ask("build-test-gcc-sanitize", [], f"-R {pattern}")
-
-
-def of_rooms(folders):
-    """Builds the test programs of these folders and of those below them, and runs what they hold. They have a build folder
-    of their own, because ctest runs all that is built in one. Only names of their tests have a point."""
-    paths = [path.relative_to(ROOT) for path in tracked_files() if path.name.endswith("_test.cpp")]
-    rooms = {path.parent.as_posix() for path in paths}
+def targets_of(folders):
+    """The test programs of these folders and of those below them."""
+    rooms = {path.relative_to(ROOT).parent.as_posix() for path in tracked_files() if path.name.endswith("_test.cpp")}
     for folder in folders:
         if not any(f"{room}/".startswith(f"{folder}/") for room in rooms):
             refuse(f"--rooms {folder}: no test lies in a folder of that name; name folders as in core/session,scenes")
-    targets = sorted(room.replace("/", "_") + "_test" for room in rooms if any(f"{room}/".startswith(f"{folder}/") for folder in folders))
-    return build_and_ask("build-sanitize-rooms", targets, "-R '[.]' -E _NOT_BUILT")
+    return sorted(room.replace("/", "_") + "_test" for room in rooms if any(f"{room}/".startswith(f"{folder}/") for folder in folders))
+
+
+def rooms_of(words):
+    return words.rstrip("/").split(",")
+
+
+def again(record, names):
+    """Runs these tests alone, of the folders that the record names."""
+    rooms = re.search(r"--rooms (\S+)", record["command"])
+    pattern = shlex.quote("^(" + "|".join(name.replace(".", "[.]") for name in names) + ")( |$)")
+    return build_and_ask(rooms_of(rooms[1]) if rooms else [], f"-R {pattern}")
 
 
 def number(pattern, lines):
@@ -71,13 +75,14 @@ def failures(lines):
 def suite(options):
     """What the record says of the tests: what was asked, figures, names of those that failed, and the headline."""
     if options.origin:
-        names = [row[0] for table in read_json(options.origin)["tables"] if table["title"] == FAILED for row in table["rows"]]
+        origin = read_json(options.origin)
+        names = [row[0] for table in origin["tables"] if table["title"] == FAILED for row in table["rows"]]
         if not names:
             refuse(f"{options.origin}: no test failed there")
-        lines = again(names)
+        lines = again(origin, names)
         says = f"The tests that had failed in `{options.origin.name}`, after something was mended."
     elif options.rooms:
-        lines = of_rooms(options.rooms)
+        lines = build_and_ask(options.rooms, "-R '[.]' -E _NOT_BUILT")  # of tests, only those of programs have names with a point
         says = (f"The tests of {', '.join(options.rooms)} alone under AddressSanitizer, UndefinedBehaviorSanitizer and the assertions of "
                 "libstdc++, any finding fatal.")
     else:
@@ -117,7 +122,7 @@ def main():
     parser = parser_of(__doc__)
     which = parser.add_mutually_exclusive_group()
     which.add_argument("--from", dest="origin", type=pathlib.Path, metavar="RECORD")
-    which.add_argument("--rooms", type=lambda text: text.rstrip("/").split(","), default=[], metavar="FOLDERS")
+    which.add_argument("--rooms", type=rooms_of, default=[], metavar="FOLDERS")
     options = parser.parse_args()
     says, figures, failed, headline = suite(options)
     record = {"kind": "sanitizers", "title": "Sanitizers", "says": says, "headline": headline, "figures": figures,
