@@ -286,17 +286,18 @@ TEST_F(NearPairsTest, HoldWhatComesFromTheEndOfTheirReach) {
     // other time each vertex has a speed of its own.
     const Thickness thickness(n % 3 == 0 ? 0.05 : 0);
     const double gap = 0.4 + 0.5 * std::abs(some_(random_)), step = 0.01 * (0.2 + std::abs(some_(random_)));
-    std::vector<Vec3> start{{0, 0, 0},       {1, 0, 0},       {0, 1, 0},
-                            {0.2, 0.2, gap}, {1.2, 0.2, gap}, {0.2, 1.2, gap}};
+    const std::vector<Vec3> rest{{0, 0, 0},       {1, 0, 0},       {0, 1, 0},
+                                 {0.2, 0.2, gap}, {1.2, 0.2, gap}, {0.2, 1.2, gap}};
+    std::vector<Vec3> start = rest;
     std::vector<Vec3> way(6);
     for (std::size_t v = 0; v < 6; ++v) {
       const double speed = n % 2 == 0 ? 1 : std::abs(some_(random_));
       way[v] = Vec3(0, 0, (v < 3 ? step / 2 : -step / 2) * speed);
     }
-    const StrategyInput setup{mesh, start, nullptr, *find_elementary_test("filtered_exact")};
-    NearPairs near(mesh, start, thickness);
+    const StrategyInput setup{mesh, rest, nullptr, *find_elementary_test("filtered_exact")};
+    NearPairs near(mesh, rest, thickness);
     const auto made = [&](NearPairs* list) {
-      return Session("test", setup, kDrvbcFastComplete, kDrvbcFastComplete, start,
+      return Session("test", setup, kDrvbcFastComplete, kDrvbcFastComplete, rest,
                      {.keep_rest_crossings = true, .near = list, .thickness = thickness});
     };
     Session with = made(&near), without = made(nullptr);
