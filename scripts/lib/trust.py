@@ -44,8 +44,8 @@ MOVED = {
 }
 # What the page adds to every record of a kind.
 NOTES = {
-    "mutants": "Survivors that a record lists without a reason are asked again, after tests were written: see *Mutants that were asked "
-               "again*. Those that have got a reason since stand in `scripts/lib/mutants.json`, and are not asked.",
+    "mutants": "Survivors that a record lists without a reason can be asked again, after tests were written (`scripts/find-faults mutants "
+               "--from`). Reasons stand in `scripts/lib/mutants.json`.",
     "sanitizers": "A record that was made with `--from` asks only those tests again that had failed in an older one. The record of the "
                   "whole suite is in the table above.",
     "hostile": "Models are read by a process of its own. Where that process crashes or meets a limit, the program refuses the file in "

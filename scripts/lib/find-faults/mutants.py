@@ -5,7 +5,7 @@
   scripts/find-faults mutants --only core/session --count 40       of a file or a folder
   scripts/find-faults mutants --list --count 0          the places, without a run
   scripts/find-faults mutants --record                  writes results/trust/DATE-mutants.json from the file of results
-  scripts/find-faults mutants --from results/trust/2026-11-26-mutants-2.json --stages room,own,rooms
+  scripts/find-faults mutants --from results/trust/2026-12-01-mutants.json --stages room,own,rooms
                                            asks the survivors of a record without a reason once more, after tests were written for
                                            them; with --record, writes DATE-mutants-asked-again.json
 
