@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "core/mesh/test_shapes.h"
 #include "library/test_steps.h"
 
 // Holds the answers of an object with an obstacle to a search of all feature pairs of both surfaces.
@@ -89,6 +90,24 @@ TEST(SelfCollision, RemembersNothingOfObstaclesThatChangesAnAnswer) {
     }
   }
   EXPECT_GT(crossing, intervals() / 10);
+}
+
+// A free step leaves its end known, until an obstacle has moved twice since: what it crosses after the first
+// of these moves nobody has looked at. Mutation: the second move is taken for the first.
+TEST(SelfCollision, LooksAtObstaclesThatMovedTwiceSinceAFreeStep) {
+  const Shape ball = icosphere(2);
+  const FaceRows faces = face_rows(ball.triangles);
+  const Rows rest = rows(ball.positions);
+  const auto at = [&](double x, double y) { return Rows(rest.rowwise() + Eigen::RowVector3d(x, y, 0)); };
+  const Rows beside = at(1.5, 1.5), further = at(1.5, 1.51), inside = at(0.5, 0), deeper = at(0.4, 0);
+  SelfCollision::Options options;
+  options.obstacles.push_back({faces, beside});
+  SelfCollision body(faces, rest, options);
+  body.move_obstacle(0, beside, further);
+  EXPECT_TRUE(body.all_contacts(rest, rest).free());
+  body.move_obstacle(0, further, inside);
+  body.move_obstacle(0, inside, deeper);
+  EXPECT_TRUE(body.all_contacts(rest, rest).intersects_at_start());
 }
 
 }  // namespace
