@@ -196,7 +196,7 @@ std::optional<double> PreparedEngine::free_until(const Motion& motion, Session::
 }
 
 std::optional<double> PreparedEngine::touches_again(const Motion& motion) const {
-  // What crosses and goes on is left out of a step by its own start.
+  // With `ongoing`, the start of each step decides what is left out of that step.
   if (!touched_first_ || options_.exclude.ongoing) return std::nullopt;
   const FeaturePair& pair = *touched_first_;
   for (const VertexId v : vertices_of(mesh_, pair))

@@ -125,7 +125,8 @@ class SelfCollision::Engine::Prepared final : public SelfCollision::Engine {
   std::optional<CrossingSearch> crossing_search_;
   // The last one that free_until() met.
   std::vector<Vec3> crossing_start_;
-  std::optional<FeaturePair> touched_first_;  // in the last step in which something of the mesh did
+  // The feature pair that touched first in the last step in which anything of the mesh touched.
+  std::optional<FeaturePair> touched_first_;
 };
 
 }  // namespace cscd

@@ -4,4 +4,4 @@ set(CMAKE_CXX_FLAGS_DEBUG "-O1 -g -fsanitize=thread -fno-omit-frame-pointer" CAC
 set(CMAKE_EXE_LINKER_FLAGS_DEBUG "-fsanitize=thread" CACHE STRING "")
 set(CSCD_VIEWER OFF CACHE BOOL "")  # nothing of it runs on threads
 set(CSCD_WARNINGS_AS_ERRORS ON CACHE BOOL "")
-set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON CACHE BOOL "")  # rooms with oneTBB and without define different names
+set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON CACHE BOOL "")  # rooms share them, and those that link oneTBB have a definition more

@@ -5,7 +5,7 @@
 
 A cycle gives the shards of one run (`cscd run --shards`) to one to three workers, kills them with SIGKILL after a random time, one to
 three times over, and lets the command finish without workers. After each kill every result that has its name has to be whole, and the
-record at the end has to equal the undisturbed one byte by byte. Builds the program first; 200 cycles take ten minutes on 2 idle cores.
+record at the end has to equal the undisturbed one byte by byte. Builds the program first; 200 cycles take a few minutes.
 Exit status: 0 all equal, 1 something differs, 2 it could not run.
 """
 import gzip

@@ -52,7 +52,7 @@ def rooms_of(words):
 
 
 def again(record, names):
-    """Runs these tests alone, of the folders that the record names."""
+    """Runs these tests alone, in the build of the folders that the record names."""
     rooms = re.search(r"--rooms (\S+)", record["command"])
     pattern = shlex.quote("^(" + "|".join(name.replace(".", "[.]") for name in names) + ")( |$)")
     return build_and_ask(rooms_of(rooms[1]) if rooms else [], f"-R {pattern}")
