@@ -1,12 +1,25 @@
 #include "core/session/known_starts.h"
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
+
+#include "core/elementary/question/apart_before.h"
+#include "core/geometry/feature_motion.h"
 
 namespace cscd {
 namespace {
 
 // From more contacts than this it is quicker to look at the whole surface again.
 constexpr std::size_t kMostFollowed = 20'000;
+
+// Whether the features of a pair certainly do not touch.
+bool stay_apart(const TriangleMesh& mesh, const Motion& motion, const FeaturePair& pair) {
+  const auto ask = [](const auto& query) { return apart_before(query, 0, 1) >= 1; };
+  return pair.kind == FeaturePair::Kind::vertex_face
+             ? ask(vertex_face(mesh, motion, VertexId{pair.a}, TriangleId{pair.b}))
+             : ask(edge_edge(mesh, motion, EdgeId{pair.a}, EdgeId{pair.b}));
+}
 
 }  // namespace
 
@@ -100,7 +113,10 @@ void KnownStarts::learn_end(const Motion& motion, const Rig::Interval* bones, co
   }
   end_.assign(motion.end().begin(), motion.end().end());
   if (!certainty.all || found.contacts.size() > kMostFollowed) return;
-  end_touched_ = found;
+  end_touched_.clear();
+  std::ranges::copy_if(found.contacts, std::back_inserter(end_touched_.contacts), [&](const Contact& close) {
+    return thickness_.is_zero() || !stay_apart(poses_.mesh(), motion, close.pair);
+  });
   if (bones != nullptr) end_bones_.assign(bones->end.begin(), bones->end.end());
   end_follows_ = true;
 }

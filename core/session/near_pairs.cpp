@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "core/base/rounding.h"
 #include "core/detect/compose.h"
-#include "core/geometry/simd_doubles.h"
 #include "core/mesh/mean_edge.h"
+#include "core/session/surface_motion.h"
 
 namespace cscd {
 namespace {
@@ -33,66 +32,14 @@ constexpr std::size_t kListsOfNearAnchor = 16;
 // The work of a strategy is counted in pairs of triangles: those that it tests, one for so many overlap
 // tests, and one for so many triangles that it looks at.
 constexpr std::size_t kOverlapTests = 32, kLookedAt = 16;
+// To make a list from an anchor takes as long as the pairs of a strategy, one for so many triangles.
+constexpr double kOfList = 12;
 // Pairs are looked at because patches have bent until that takes this share of what an anchor takes.
 constexpr double kBent = 0.5;
 // So many small steps go by without an anchor after one that has spared less than it took, and after several
 // of these; fewer where steps are so many times shorter.
 constexpr std::size_t kFirstWait = 8, kLongestWait = 256;
 constexpr double kFarShorter = 4;
-constexpr std::size_t kSampled = 64;
-// Squares of lengths below this underflow.
-constexpr double kTiny = 0x1p-480;
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-// The roundings of a few sums and of a square root, as a factor.
-double rounded_up(double length) {
-  return std::max(length, kTiny) * (1 + 16 * kUnitRoundoff);
-}
-
-Vec3 mean_displacement(std::span<const Vec3> from, std::span<const Vec3> to,
-                       std::span<const std::size_t> sample) {
-  Vec3 sum = Vec3::Zero();
-  for (const std::size_t v : sample) sum += to[v] - from[v];
-  return sum / static_cast<double>(sample.size());
-}
-
-// The least and the largest displacement of all vertices along each axis.
-struct Displacements {
-  Vec3 low, high;
-};
-Displacements displacements(std::span<const Vec3> from, std::span<const Vec3> to) {
-  Displacements out{to[0] - from[0], to[0] - from[0]};
-  const auto take = [&](const Vec3& d) { out.low = out.low.cwiseMin(d), out.high = out.high.cwiseMax(d); };
-  // Eight vertices are three times eight numbers.
-  const std::size_t whole = from.size() / kLanes;
-  if (whole > 0) {
-    Lane8 low[3], high[3];
-    for (std::size_t i = 0; i < whole; ++i)
-      for (std::size_t r = 0; r < 3; ++r) {
-        const std::size_t at = 3 * kLanes * i + kLanes * r;
-        const Lane8 d = loaded<Lane8>(to[0].data() + at) - loaded<Lane8>(from[0].data() + at);
-        low[r] = i == 0 ? d : smaller(low[r], d), high[r] = i == 0 ? d : larger(high[r], d);
-      }
-    const auto take_all = [&](const Lane8(&rows)[3]) {
-      double numbers[3 * kLanes];
-      for (std::size_t r = 0; r < 3; ++r) store(rows[r], numbers + kLanes * r);
-      for (std::size_t v = 0; v < kLanes; ++v)
-        take(Vec3(numbers[3 * v], numbers[3 * v + 1], numbers[3 * v + 2]));
-    };
-    take_all(low), take_all(high);
-  }
-  for (std::size_t v = kLanes * whole; v < from.size(); ++v) take(to[v] - from[v]);
-  return out;
-}
-
-// The largest displacement, less a shift.
-double longest(std::span<const Vec3> from, std::span<const Vec3> to, const Vec3& shift) {
-  double squared = 0;
-  for (std::size_t v = 0; v < from.size(); ++v)
-    squared = std::max(squared, (to[v] - from[v] - shift).squaredNorm());
-  return std::sqrt(squared);
-}
 
 // All but few triangles are higher than this. Neighbours that are not would be listed for each other.
 double low_height(const TriangleMesh& mesh, std::span<const Vec3> pose) {
@@ -141,44 +88,18 @@ NearPairs::NearPairs(const TriangleMesh& mesh, std::span<const Vec3> reference, 
       reference_(reference),
       thickness_(thickness),
       edge_(mean_edge(mesh, reference)),
+      sample_(sampled_vertices(mesh.vertex_count())),
       most_room_(kMostReach * edge_) {
   most_room_ =
       std::clamp(low_height(mesh, reference) - thickness.largest(), kLeastRoom * most_room_, most_room_);
-  const std::size_t count = std::min(kSampled, mesh.vertex_count());
-  for (std::size_t i = 0; i < count; ++i) sample_.push_back(i * mesh.vertex_count() / count);
-}
-
-// The displacement of the sample within one step, less its mean. No bound: it spares large steps a look at
-// all vertices.
-double NearPairs::sampled_length(const Motion& motion) const {
-  const Vec3 mean = mean_displacement(motion.start(), motion.end(), sample_);
-  double longest = 0;
-  for (const std::size_t v : sample_)
-    longest = std::max(longest, (motion.end()[v] - motion.start()[v] - mean).squaredNorm());
-  return std::sqrt(longest);
-}
-
-double NearPairs::moved(const Motion& motion, std::span<const Vec3> from, double enough) const {
-  double most = 0;
-  for (const std::span<const Vec3> to : {motion.start(), motion.end()}) {
-    const Displacements all = displacements(from, to);
-    const Vec3 middle = all.low / 2 + all.high / 2, half = all.high / 2 - all.low / 2;
-    // The roundings of differences are shares of what they are made of.
-    const double error = 8 * kUnitRoundoff * all.low.cwiseAbs().cwiseMax(all.high.cwiseAbs()).maxCoeff();
-    double bound = rounded_up(half.norm() + error);
-    if (!(bound <= enough)) bound = rounded_up(longest(from, to, middle) + error);
-    if (!(bound <= enough)) return kInfinite;
-    most = std::max(most, bound);
-  }
-  return most;
 }
 
 bool NearPairs::is_within_reach(const Motion& motion) {
   const double thick = thickness_.largest();
-  if (!(reach_ > 0) || !(2 * sampled_length(motion) <= reach_ - thick)) return false;
-  moved_ = moved(motion, pose_, (reach_ - thick) / 2);
-  // Rounded up, so that what is farther than the reach stays farther than the thickness.
-  return rounded_up(2 * moved_ + thick) <= reach_;
+  const double most = (reach_ - thick) / 2;
+  if (!(reach_ > 0) || !(sampled_length(motion, sample_, most) <= most)) return false;
+  needed_ = surface_motion(motion, pose_, sample_, most).reach(thick);
+  return needed_ <= reach_;
 }
 
 void NearPairs::note_work(const CullCounts& counts) {
@@ -187,13 +108,15 @@ void NearPairs::note_work(const CullCounts& counts) {
 }
 
 bool NearPairs::is_worth_listing(const Motion& motion) {
-  const double longest = kOfLists * most_room_ / 2;
+  // A list lasts for so many steps as they fit into half of its reach, which have to spare what it takes.
+  const double spared = kOfList * static_cast<double>(work_) / static_cast<double>(mesh_.triangle_count());
+  const double longest = std::min(1.0, spared) * kOfLists * most_room_ / 2;
   if (work_ == 0 || sample_.empty() || !(longest > 0)) return false;
-  const double length = sampled_length(motion);
+  const double length = sampled_length(motion, sample_, longest);
   if (!(length <= longest)) return false;
   const bool has_anchor = is_anchor_ || (motions_ && motions_->has_anchor());
   if (!has_anchor && waits_ > 0 && kFarShorter * length >= waits_for_) return --waits_, false;
-  length_ = moved(motion, motion.start(), longest);
+  length_ = surface_motion(motion, motion.start(), sample_, longest).most;
   return length_ <= longest;
 }
 
@@ -285,9 +208,9 @@ bool NearPairs::list(std::span<const Vec3> pose, double room, const Complete& co
 }
 
 void NearPairs::pass_on(const Motion& motion, TrianglePairSink& sink) const {
-  const double thick = thickness_.largest(), most = rounded_up(2 * moved_ + thick);
+  const double thick = thickness_.largest();
   for (const auto& [low, pair] : near_) {
-    if (low > most) break;
+    if (low > needed_) break;
     const Triangle &a = mesh_.corners(pair.a), &b = mesh_.corners(pair.b);
     // Both triangles as seen from a corner of the first: what they have moved against each other.
     double apart = 0, error = 0;

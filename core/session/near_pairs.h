@@ -19,8 +19,8 @@
 namespace cscd {
 
 // The pairs of triangles that are near each other, or cross, in one pose. While the surface stays near that
-// pose, all others are apart, so that a small step costs little more than a look at its positions
-// (core/soundness.md, "Theorem: small steps near a pose").
+// pose, turned and shifted as a whole, all others are apart, so that a small step costs little more than a
+// look at its positions (core/soundness.md, "Theorem: small steps near a pose").
 //
 // A complete strategy that sees starts finds the first list: it is asked about the pose at rest. That pose is
 // the *anchor*. When the surface has moved on, the next list is made from the anchor by what patches have
@@ -49,10 +49,6 @@ class NearPairs {
   std::size_t lists() const { return lists_; }
 
  private:
-  // The largest distance, rounded up, of a vertex from its place in `from` at either end of the motion, less
-  // one shift for each end. Infinite as soon as it exceeds `enough`.
-  double moved(const Motion& motion, std::span<const Vec3> from, double enough) const;
-  double sampled_length(const Motion& motion) const;
   bool is_within_reach(const Motion& motion);
   bool is_worth_listing(const Motion& motion);
   bool anchor(std::span<const Vec3> pose, Detector& detector);
@@ -72,7 +68,7 @@ class NearPairs {
   double reach_ = 0;            // pairs that are not listed are farther apart than this in the pose
   std::vector<NearPair> near_;  // by distance
   bool is_anchor_ = false;      // the list is that of an anchor, from which no other list was made
-  double moved_ = 0;            // from the pose, in the last step that was looked at
+  double needed_ = 0;           // the reach that the last step needs
   double length_ = 0;           // of the last step that was worth a list
 
   double most_room_;        // how far beyond the thickness the next anchor may reach

@@ -56,6 +56,7 @@ class PoseCrossings {
   // Takes what a caller knows to be the crossings in `positions`.
   void know(std::span<const Vec3> positions, const Crossings& crossings);
 
+  const TriangleMesh& mesh() const { return test_.mesh(); }
   // The number of crossing pairs that are kept for a pose.
   std::size_t most() const { return most_; }
 

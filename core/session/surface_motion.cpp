@@ -1,0 +1,189 @@
+#include "core/session/surface_motion.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/rounding.h"
+#include "core/geometry/simd_doubles.h"
+
+namespace cscd {
+namespace {
+
+using Mat3 = Eigen::Matrix3d;
+
+constexpr std::size_t kSampled = 64;
+// Squares of lengths below this underflow.
+constexpr double kTiny = 0x1p-480;
+
+// The least and the largest of `to` - turn `from` over all vertices, along each axis.
+struct Displacements {
+  Vec3 low, high;
+  double largest;  // coordinate of `from`, and number in low and high
+
+  Displacements(std::span<const Vec3> from, std::span<const Vec3> to, const Mat3* turn);
+  Vec3 middle() const { return low / 2 + high / 2; }
+  // Let u be the unit roundoff and L the largest number. Differences are off by u L. Where there is a turn,
+  // products and sums are off by less than 9 u L more, and the length of all three by 21 u L.
+  double error() const { return 64 * kUnitRoundoff * largest; }
+  double bound() const { return rounded_up((high / 2 - low / 2).norm() + error()); }
+};
+
+// A number of a turned vertex is a sum of that vertex's three numbers, which are at most two places away in
+// memory. For each of these places, what it is multiplied with: eight vertices are three times eight numbers.
+struct TurnLanes {
+  static constexpr std::size_t kAway = 2;
+  Lane8 of[2 * kAway + 1][3];
+
+  explicit TurnLanes(const Mat3& turn) {
+    for (std::size_t place = 0; place <= 2 * kAway; ++place)
+      for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t l = 0; l < kLanes; ++l) {
+          const std::size_t row = (kLanes * r + l) % 3, column = row + place;
+          const bool is_own = column >= kAway && column < kAway + 3;
+          of[place][r][l] =
+              is_own ? turn(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column - kAway)) : 0;
+        }
+  }
+  Lane8 turned(const double* at, std::size_t r) const {
+    Lane8 sum = of[0][r] * loaded<Lane8>(at - kAway);
+    for (std::size_t place = 1; place <= 2 * kAway; ++place)
+      sum = sum + of[place][r] * loaded<Lane8>(at - kAway + place);
+    return sum;
+  }
+};
+
+Displacements::Displacements(std::span<const Vec3> from, std::span<const Vec3> to, const Mat3* turn) {
+  const auto displacement = [&](std::size_t v) -> Vec3 { return to[v] - (turn ? *turn * from[v] : from[v]); };
+  low = high = displacement(0);
+  Vec3 outermost = from[0].cwiseAbs();
+  const auto take = [&](const Vec3& d) { low = low.cwiseMin(d), high = high.cwiseMax(d); };
+  // The first and the last vertex are left out of the lanes, because turning reads two numbers on either
+  // side.
+  const std::size_t whole = from.size() > 2 ? (from.size() - 2) / kLanes : 0;
+  if (whole > 0) {
+    const double *const before = from[1].data(), *const after = to[1].data();
+    Lane8 least[3], most[3], outer[3];
+    const auto look = [&](const auto& turned) {
+      for (std::size_t i = 0; i < whole; ++i)
+        for (std::size_t r = 0; r < 3; ++r) {
+          const std::size_t at = 3 * kLanes * i + kLanes * r;
+          const Lane8 d = loaded<Lane8>(after + at) - turned(before + at, r);
+          const Lane8 far = absolute(loaded<Lane8>(before + at));
+          least[r] = i == 0 ? d : smaller(least[r], d), most[r] = i == 0 ? d : larger(most[r], d);
+          outer[r] = i == 0 ? far : larger(outer[r], far);
+        }
+    };
+    if (turn != nullptr)
+      look([lanes = TurnLanes(*turn)](const double* at, std::size_t r) { return lanes.turned(at, r); });
+    else
+      look([](const double* at, std::size_t /*r*/) { return loaded<Lane8>(at); });
+    const auto for_each_vertex = [](const Lane8(&rows)[3], const auto& visit) {
+      double numbers[3 * kLanes];
+      for (std::size_t r = 0; r < 3; ++r) store(rows[r], numbers + kLanes * r);
+      for (std::size_t v = 0; v < kLanes; ++v)
+        visit(Vec3(numbers[3 * v], numbers[3 * v + 1], numbers[3 * v + 2]));
+    };
+    for_each_vertex(least, take), for_each_vertex(most, take);
+    for_each_vertex(outer, [&](const Vec3& far) { outermost = outermost.cwiseMax(far); });
+  }
+  for (std::size_t v = 1 + kLanes * whole; v < from.size(); ++v) {
+    take(displacement(v));
+    outermost = outermost.cwiseMax(from[v].cwiseAbs());
+  }
+  largest = outermost.cwiseMax(low.cwiseAbs()).cwiseMax(high.cwiseAbs()).maxCoeff();
+}
+
+// The largest displacement, less a shift.
+double longest(std::span<const Vec3> from, std::span<const Vec3> to, const Mat3* turn, const Vec3& shift) {
+  double squared = 0;
+  for (std::size_t v = 0; v < from.size(); ++v)
+    squared = std::max(squared, (to[v] - (turn ? Vec3(*turn * from[v]) : from[v]) - shift).squaredNorm());
+  return std::sqrt(squared);
+}
+
+Vec3 mean_of(std::span<const Vec3> points, std::span<const std::size_t> sample) {
+  Vec3 sum = Vec3::Zero();
+  for (const std::size_t v : sample) sum += points[v];
+  return sum / static_cast<double>(sample.size());
+}
+
+// The rotation that brings the sample of `from` closest to that of `to` (Kabsch, 1976).
+Mat3 best_turn(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const std::size_t> sample) {
+  const Vec3 before = mean_of(from, sample), after = mean_of(to, sample);
+  Mat3 covariance = Mat3::Zero();
+  for (const std::size_t v : sample) covariance += (to[v] - after) * (from[v] - before).transpose();
+  if (!(covariance.cwiseAbs().maxCoeff() < std::numeric_limits<double>::max())) return Mat3::Identity();
+  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 u = svd.matrixU();
+  if (u.determinant() * svd.matrixV().determinant() < 0) u.col(2) = -u.col(2);
+  return u * svd.matrixV().transpose();
+}
+
+// How far the sample is from where a turn takes it, less one shift.
+double sampled_length(std::span<const Vec3> from, std::span<const Vec3> to, const Mat3* turn,
+                      std::span<const std::size_t> sample) {
+  const auto displacement = [&](std::size_t v) -> Vec3 { return to[v] - (turn ? *turn * from[v] : from[v]); };
+  Vec3 low = displacement(sample[0]), high = low;
+  for (const std::size_t v : sample)
+    low = low.cwiseMin(displacement(v)), high = high.cwiseMax(displacement(v));
+  const Vec3 middle = low / 2 + high / 2;
+  double squared = 0;
+  for (const std::size_t v : sample) squared = std::max(squared, (displacement(v) - middle).squaredNorm());
+  return std::sqrt(squared);
+}
+
+}  // namespace
+
+double rounded_up(double length) {
+  return std::max(length, kTiny) * (1 + 16 * kUnitRoundoff);
+}
+
+double SurfaceMotion::reach(double distance) const {
+  return kept > 0 ? rounded_up((2 * most + distance) / kept) : std::numeric_limits<double>::infinity();
+}
+
+std::vector<std::size_t> sampled_vertices(std::size_t vertex_count) {
+  const std::size_t count = std::min(kSampled, vertex_count);
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < count; ++i) out.push_back(i * vertex_count / count);
+  return out;
+}
+
+SurfaceMotion surface_motion(const Motion& motion, std::span<const Vec3> from,
+                             std::span<const std::size_t> sample, double enough) {
+  const std::span<const Vec3> ends[2]{motion.start(), motion.end()};
+  Mat3 turns[2]{Mat3::Identity(), Mat3::Identity()};
+  double most = 0;
+  for (std::size_t e = 0; e < 2; ++e) {
+    const auto bound = [&](const Mat3* turn) {
+      if (!(sampled_length(from, ends[e], turn, sample) <= enough)) return SurfaceMotion{}.most;
+      const Displacements all(from, ends[e], turn);
+      const double of_box = all.bound();
+      return of_box <= enough ? of_box : rounded_up(longest(from, ends[e], turn, all.middle()) + all.error());
+    };
+    double least = bound(nullptr);
+    if (!(least <= enough)) {
+      turns[e] = best_turn(from, ends[e], sample);
+      least = bound(&turns[e]);
+    }
+    if (!(least <= enough)) return {};
+    most = std::max(most, least);
+  }
+  // What the matrices lack of being rotations, and how far they differ (Frobenius norms, which are not less
+  // than those of matrices).
+  double lacks = 0;
+  for (const Mat3& turn : turns) lacks = std::max(lacks, (turn.transpose() * turn - Mat3::Identity()).norm());
+  const double squared = 1 - lacks - (turns[1] - turns[0]).squaredNorm() / 4;
+  const double roundings = lacks > 0 || squared < 1 ? 64 * kUnitRoundoff : 0;
+  return {most, squared > roundings ? std::sqrt(squared - roundings) : 0};
+}
+
+double sampled_length(const Motion& motion, std::span<const std::size_t> sample, double enough) {
+  const double shifted = sampled_length(motion.start(), motion.end(), nullptr, sample);
+  if (shifted <= enough) return shifted;
+  const Mat3 turn = best_turn(motion.start(), motion.end(), sample);
+  return sampled_length(motion.start(), motion.end(), &turn, sample);
+}
+
+}  // namespace cscd
