@@ -205,10 +205,8 @@ inline Mask16 PatchDescent::near_counted(const TriangleBounds& triangles, Mask16
 // Returns the triangles of patch q that are not proven apart from triangle `lane` of patch p.
 inline Mask16 PatchDescent::near_triangle(std::size_t q, Mask16 wanted, std::size_t p, std::size_t lane) {
   if (!input_.positions.known()) return wanted;
-  // Compute p's bounds before q's. The cache holds the bounds of 64 patches, so computing p's second could
-  // evict q's while a reference to them is in use. If q's evict p's, the caller computes p's again, in
-  // another place.
-  bounds_of_triangles(p);
+  // Both are held, or one of them was computed last, because the caller has just asked for both. So to
+  // compute the other evicts neither.
   const TriangleBounds& triangles = bounds_of_triangles(q);
   return near(triangles, wanted, bounds_of_triangles(p), lane);
 }
