@@ -10,6 +10,7 @@
 #include "core/elementary/catalogue.h"
 #include "core/fast/drvbc_fast.h"
 #include "core/mesh/test_shapes.h"
+#include "core/session/near_strategy.h"
 #include "core/session/session.h"
 
 namespace cscd {
@@ -143,6 +144,27 @@ TEST_F(NearPairsTest, AnswerFromStartsThatAreNotKnown) {
     start = end;
   }
   EXPECT_GT(by_list, 90);
+}
+
+// The strategy of a benchmark keeps one list for a thickness, and makes another where that changes. Mutation:
+// a list for each step.
+TEST_F(NearPairsTest, LastWhileTheThicknessDoes) {
+  const StrategyInput input = setup(false);
+  const Prepared prepared = make_drvbc_fast_near(input), plain = kDrvbcFastComplete.make(input);
+  std::vector<Vec3> start = shape_.positions;
+  ContactSet found, expected;
+  int by_list = 0;
+  for (int n = 0; n < 60; ++n) {
+    SCOPED_TRACE(n);
+    const std::vector<Vec3> end = next(start, 1e-5, n == 0);
+    const Step step{.motion = Motion(start, end), .thickness = Thickness(n < 30 ? 0.01 : 0.02)};
+    by_list += *prepared.detector->detect(step, found).cull.bvot == 0;
+    plain.detector->detect(step, expected);
+    found.sort(), expected.sort();
+    ASSERT_EQ(told(found), told(expected));
+    start = end;
+  }
+  EXPECT_GT(by_list, 50);
 }
 
 // A strategy for known starts cannot find what is near. A complete one is prepared for that once there were

@@ -97,6 +97,17 @@ class PatchMotionsTest : public testing::Test {
   std::optional<std::size_t> bent_;
 };
 
+// Without an anchor, nothing is known of what is near.
+TEST_F(PatchMotionsTest, NeedAnAnchor) {
+  EXPECT_FALSE(motions_.has_anchor());
+  expect_all(shape_.positions, 0.5 * kCell);
+  EXPECT_FALSE(bent_);
+  anchor(shape_.positions, 0.6 * kCell);
+  EXPECT_TRUE(motions_.has_anchor());
+  motions_.forget_anchor();
+  EXPECT_FALSE(motions_.has_anchor());
+}
+
 // A pose that is turned and shifted as a whole keeps all distances, so that no pair is looked at anew.
 TEST_F(PatchMotionsTest, KnowWhatIsNearWhereAllTurns) {
   anchor(shape_.positions, 0.6 * kCell);

@@ -67,6 +67,14 @@ TEST_F(Collada, KeysThatAreNotJoinedByLinesAreRefusedUnlessDense) {
   EXPECT_EQ(refusal(write("still.dae", replaced(still, "LINEAR LINEAR", "STEP STEP"))), "");
 }
 
+// A corner may have further indices, as that of a normal, which name no vertices.
+TEST_F(Collada, FurtherIndicesOfCornersAreNotVertices) {
+  const std::string text = replaced(
+      kColladaFile, R"(offset="0"/><p>0 1 2 0 2 3</p>)",
+      R"(offset="0"/><input semantic="NORMAL" source="#p" offset="1"/><p>0 9 4 9 2 9 0 9 2 9 3 9</p>)");
+  EXPECT_TRUE(says(refusal(write("far.dae", text)), "entry 2 (counted from 0) names vertex 4 of 4"));
+}
+
 constexpr char kShape[] = "<bind_shape_matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1</bind_shape_matrix>";
 
 TEST_F(Collada, SkinsWithoutBindShapeTakeTheIdentity) {
