@@ -54,7 +54,7 @@ def small_steps(program):
     """What small steps take, as a line; none where there is no record of them."""
     folder = newest("solver", False)
     small = small_step_text(Record(folder / "scale.json.gz", program)) if folder else ""
-    return [f"A small step, as a solver asks for by the hundred, costs what moves: one {small} ([small steps]({folder.relative_to(ROOT)}/scale.md))."] \
+    return [f"A small step, as a solver asks for by the hundred, costs little where little moves: one {small} ([small steps]({folder.relative_to(ROOT)}/scale.md))."] \
         if small else []
 
 
@@ -62,7 +62,7 @@ def door(starts, full):
     """What a visitor wants to know first, in a few rows."""
     return starts.list_of("door") + "\n" + "\n".join([
         "*One query* is what `cscd query` runs without options, the method `drvbc_fast_all`: all contacts, refit included, the median "
-        "interval. In a clip with contacts some intervals touch, and those take longer. A start that may cross itself is answered by "
+        "interval. In a clip with contacts some intervals touch, and those take longer. A start that is not known to be free of crossings is answered by "
         "`drvbc_fast_complete`. *Times faster* compares medians of methods that are asked the same: `drvbc_fast_all` and the others for all "
         "contacts, `drvbc_fast` and DRVBC for the first one. `cscd list mcd` explains any of these names.",
         *small_steps(starts.program),

@@ -397,8 +397,8 @@ def small_step_text(record):
     if not times:
         return ""
     near, ratios = sorted(ms for ms, _ in times.values()), sorted(without / ms for ms, without in times.values())
-    return (f"of {SMALL_STEP['moves']:g} mean edges takes {number(near[0])} to {number(near[-1])} ms on {', '.join(times)}, {number(ratios[0])} to "
-            f"{number(ratios[-1])} times less than the same method without its list of what is near")
+    return (f"that moves {SMALL_STEP['moves']:g} of the mean edge takes {number(near[0])} to {number(near[-1])} ms on {', '.join(times)}, {number(ratios[0])} to "
+            f"{number(ratios[-1])} times faster than the same method without its list of near pairs")
 
 
 def summary(record):
