@@ -331,7 +331,7 @@ json summary_json(const ClipAnswer& answer) {
       {"with_ignored", s.with_ignored},
       {"ignored", std::move(ignored)}};
   const bool is_thick = answer.input.thickness.length > 0;
-  out.update(counts_json(s.verdicts, is_thick));
+  out.update(verdict_counts_json(s.verdicts, is_thick));
   if (is_thick)
     out.update({{"close_at_start", s.close_at_start}, {"with_close_at_start", s.with_close_at_start}});
   if (answer.input.motion) out["true_motion"] = true_motion_json(answer.input, answer.true_motion);

@@ -243,7 +243,7 @@ json true_motion_json(const Input& input, const TrueSummary& s) {
              {"to", at_share(input, s.first->interval, s.first->answer.to)},
              {"first", s.first->names.first},
              {"second", s.first->names.second}};
-  json out = counts_json(s.verdicts, true);
+  json out = verdict_counts_json(s.verdicts, true);
   out.update({{"verdict", to_string(s.verdict())},
               {"only_true", s.only_true},
               {"only_straight", s.only_straight},

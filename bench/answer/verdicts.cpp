@@ -22,7 +22,7 @@ std::string meeting_text(const NamePair& both, IntervalVerdict how) {
                                                                         : "touches");
 }
 
-nlohmann::json counts_json(const VerdictCounts& verdicts, bool may_be_close) {
+nlohmann::json verdict_counts_json(const VerdictCounts& verdicts, bool may_be_close) {
   using enum IntervalVerdict;
   nlohmann::json out;
   for (const IntervalVerdict verdict : {clear, touches, intersects_at_start, undecided, close})

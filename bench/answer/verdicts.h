@@ -39,6 +39,6 @@ std::string meeting_text(const NamePair& both, IntervalVerdict how);
 std::string meeting_text(const NamePair& both, const std::string& verb);
 
 // The counts by the names of the verdicts; that of `close` where it may occur.
-nlohmann::json counts_json(const VerdictCounts& verdicts, bool may_be_close);
+nlohmann::json verdict_counts_json(const VerdictCounts& verdicts, bool may_be_close);
 
 }  // namespace cscd::bench

@@ -214,7 +214,7 @@ std::string clip_title(const ImportReport& r) {
          many(r.clips.size(), "clip") + ")";
 }
 
-std::string clip_text(const ImportReport& r) {
+std::string import_text(const ImportReport& r) {
   std::string out;
   const auto line = [&](const std::string& text) { out += "  " + text + "\n"; };
   if (const ImportReport::Clip* clip = chosen_clip(r)) {

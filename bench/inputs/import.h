@@ -49,7 +49,7 @@ double second_of_frame(const scenes::ImportReport& report, std::size_t frame, st
 double frame_at(const scenes::ImportReport& report, double seconds);
 
 // Tells in a few lines which clip was read, and what was done to the surface.
-std::string clip_text(const scenes::ImportReport& report);
+std::string import_text(const scenes::ImportReport& report);
 std::string surface_text(const scenes::ImportReport& report);
 // "24 frames a second, as the file says".
 std::string rate_text(const scenes::ImportReport& report);

@@ -189,7 +189,7 @@ void name_input(const std::string& name, const std::function<void()>& work) {
 void say_what_was_read(const Input& input, std::FILE* to) {
   if (!input.import) return;
   std::fprintf(to, "%s (%s)\n%s", input.name.c_str(), input.import->format.c_str(),
-               clip_text(*input.import).c_str());
+               import_text(*input.import).c_str());
   if (!input.clip_was_named)
     std::fprintf(to, "  it is the first clip that moves the surface; --clip names another\n");
   std::fprintf(to, "%s", surface_text(*input.import).c_str());

@@ -119,7 +119,7 @@ class AllVerdicts {
   }
   // The clips that are close are counted where there is a thickness.
   json as_json(const std::string& input, bool is_thick) {
-    json out = counts_json(counts_, is_thick);
+    json out = verdict_counts_json(counts_, is_thick);
     out.update({{"sentence", sentence(input)}, {"headline", headline_}, {"passed_over", still_.size()}});
     return out;
   }

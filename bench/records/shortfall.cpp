@@ -1,10 +1,15 @@
 #include "bench/records/shortfall.h"
 
+#include <algorithm>
+#include <array>
+
 namespace cscd::bench {
 
 bool needs_embedded_start(const std::string& guarantee) {
-  return guarantee == to_string(Guarantee::first_contact) ||
-         guarantee == to_string(Guarantee::all_from_embedded);
+  using enum Guarantee;
+  return std::ranges::any_of(
+      std::array{complete, first_contact, all_from_embedded, heuristic},
+      [&](Guarantee one) { return to_string(one) == guarantee && cscd::needs_embedded_start(one); });
 }
 
 bool is_short(const Shortfall& lacking) {
