@@ -26,28 +26,12 @@ from tracked import tracked_files
 
 FOLDER = ROOT / "results" / "trust"
 LIB = ROOT / "scripts" / "lib"
-# Files and folders that have moved since records were written.
-MOVED = {
-    "core/base/team": "core/base/thread_pool", "core/fast/prove/stars": "core/fast/certify/one_rings",
-    "core/radial/exact_orientation": "core/radial/test_exact_orientation",
-    "bench/measure/strategies/": "bench/strategies/",
-    "core/base/output_target": "scenes/base/output_target", "core/base/temporaries": "scenes/base/temporaries",
-    "core/detect/verify": "bench/strategies/verify",
-    "core/elementary/certified/integer_polynomial": "core/elementary/certified/integer_roots",
-    "core/elementary/newton_search.h": "core/elementary/newton.cpp",
-    "core/elementary/exact/triangles_meet": "core/elementary/exact/static_contact",
-    "core/fast/cut/corner_cover": "core/fast/prepare/cut_surface", "core/fast/cut/observer": "core/fast/prepare/cluster_observer",
-    "core/fast/cut/": "core/fast/prepare/", "core/fast/descend/": "core/fast/", "core/fast/embedding": "core/fast/drvbc_fast",
-    "core/fast/follow/following_cover": "core/fast/adaptive_cover", "core/fast/keep_all/": "core/fast/contour/",
-    "core/fast/look/": "core/fast/classify/", "core/fast/prove/": "core/fast/certify/",
-    "core/fast/trial_poses": "core/fast/trial",
-}
 # What the page adds to every record of a kind.
 NOTES = {
-    "mutants": "Survivors that a record lists without a reason can be asked again, after tests were written (`scripts/find-faults mutants "
+    "mutants": "The tests came in stages: `room`, quick tests of the folder; `own`, its slower ones; `rooms`, those of folders that use it. "
+               "Survivors that a record lists without a reason can be asked again, after tests were written (`scripts/find-faults mutants "
                "--from`). Reasons stand in `scripts/lib/mutants.json`.",
-    "sanitizers": "A record that was made with `--from` asks only those tests again that had failed in an older one. The record of the "
-                  "whole suite is in the table above.",
+    "sanitizers": "Without `--rooms` the whole suite is asked. With `--from`, only those tests that had failed in an older record.",
     "hostile": "Models are read by a process of its own. Where that process crashes or meets a limit, the program refuses the file in "
                "one line; such a copy is counted as a lost importer, and is no failure.",
 }
@@ -86,14 +70,6 @@ def read_records():
     return sorted(records, key=age)
 
 
-def moved(row):
-    """A row that begins with a file, with the name that the file has today."""
-    for old, new in MOVED.items():
-        if row[0].startswith(old):
-            return [new + row[0].removeprefix(old), *row[1:]]
-    return row
-
-
 def newest_records():
     return {record["kind"]: record for _, record in read_records()}
 
@@ -102,11 +78,10 @@ def reasons_of(name):
     """The reasons of a file by what they are for. Records name the file by where it was when they were made."""
     if not name:
         return {}
-    return {tuple(moved(place)): entry["reason"] for entry in read_json(LIB / pathlib.Path(name).name) for place in entry["places"]}
+    return {tuple(place): entry["reason"] for entry in read_json(LIB / pathlib.Path(name).name) for place in entry["places"]}
 
 
 def reason_for(row, reasons):
-    row = moved(row)
     return next((reasons[tuple(row[:n])] for n in range(len(row), 0, -1) if tuple(row[:n]) in reasons), None)
 
 
@@ -143,8 +118,8 @@ def page():
     newest = newest_records()
     lines = ["# What was done to find faults", "",
              "Made by `scripts/pages` from the records beside it; `scripts/lib/trust.py` says what a record holds. The table lists",
-             "every record. Below it, the newest record of each kind is shown in full. Older records name scripts that are kinds of",
-             "`scripts/find-faults` by now.", ""]
+             "every record. Below it, the newest record of each kind is shown in full. A *room* is a folder of sources with its tests.",
+             "What holds answers against an independent truth is not here but in [the proofs and their tests](../../core/soundness.md).", ""]
     lines += table(["date", "what", "result", "record"],
                    [[record["date"], record["title"], record["headline"], f"[{path.name}]({path.name})"]
                     for path, record in reversed(records)], 4)
