@@ -15,7 +15,7 @@ double to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 // By another way than Ericson's: the distance to the plane where the foot lies in the face, else to the
 // nearest side.
 double to_face(const std::array<Vec3, 4>& x) {
-  const auto& [p, a, b, c] = x;
+  const Vec3 &p = x[0], &a = x[1], &b = x[2], &c = x[3];
   const Vec3 normal = (b - a).cross(c - a);
   const auto is_inside = [&](const Vec3& from, const Vec3& to) {
     return normal.cross(to - from).dot(p - from) >= 0;
