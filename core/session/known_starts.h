@@ -25,7 +25,7 @@ struct Certainty {
 //
 // With a thickness it knows also which poses are *clear*: nothing crosses, and no pair is close. A step
 // without a contact proves its start and its end clear. The pairs that touch are among the close ones, so
-// crossings follow from close pairs too.
+// crossings follow from close pairs too, of which those are left out that certainly stay apart.
 class KnownStarts {
  public:
   // `use_bones` says whether detectors get the skeleton. The mesh, and what the thickness refers to, must
