@@ -1,6 +1,6 @@
 #include "core/session/surface_motion.h"
 
-#include <Eigen/SVD>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -108,16 +108,36 @@ Vec3 mean_of(std::span<const Vec3> points, std::span<const std::size_t> sample) 
   return sum / static_cast<double>(sample.size());
 }
 
-// The rotation that brings the sample of `from` closest to that of `to` (Kabsch, 1976).
+// The rotation that brings the sample of `from` closest to that of `to`: the quaternion of the largest
+// eigenvalue of a symmetric matrix (Horn, 1987). Squaring the matrix again and again leaves that eigenvector
+// alone, with less code than a decomposition.
 Mat3 best_turn(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const std::size_t> sample) {
+  constexpr int kSquarings = 30;
   const Vec3 before = mean_of(from, sample), after = mean_of(to, sample);
-  Mat3 covariance = Mat3::Zero();
-  for (const std::size_t v : sample) covariance += (to[v] - after) * (from[v] - before).transpose();
-  if (!(covariance.cwiseAbs().maxCoeff() < std::numeric_limits<double>::max())) return Mat3::Identity();
-  const Eigen::JacobiSVD<Mat3> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  if (u.determinant() * svd.matrixV().determinant() < 0) u.col(2) = -u.col(2);
-  return u * svd.matrixV().transpose();
+  Mat3 s = Mat3::Zero();
+  for (const std::size_t v : sample) s += (from[v] - before) * (to[v] - after).transpose();
+  const Vec3 twist(s(1, 2) - s(2, 1), s(2, 0) - s(0, 2), s(0, 1) - s(1, 0));
+  double n[4][4] = {{s.trace(), twist.x(), twist.y(), twist.z()}};
+  double largest = std::abs(s.trace());
+  for (int i = 0; i < 3; ++i)
+    for (int j = -1; j < 3; ++j) {
+      n[1 + i][1 + j] = j < 0 ? twist[i] : s(i, j) + s(j, i) - (i == j ? s.trace() : 0);
+      largest = std::max(largest, std::abs(n[1 + i][1 + j]));
+    }
+  if (!(largest > 0 && largest < std::numeric_limits<double>::max())) return Mat3::Identity();
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) n[i][j] = n[i][j] / largest / 4 + (i == j ? 1 : 0);  // no eigenvalue below 0
+  for (int k = 0; k < kSquarings; ++k) {
+    double squared[4][4] = {}, trace = 0;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j)
+        for (int l = 0; l < 4; ++l) squared[i][j] += n[i][l] * n[l][j];
+    for (int i = 0; i < 4; ++i) trace += squared[i][i];
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) n[i][j] = squared[i][j] / trace;
+  }
+  const auto& q = *std::ranges::max_element(n, {}, [&](const auto& row) { return row[&row - n]; });
+  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
 }
 
 // How far the sample is from where a turn takes it, less one shift.
