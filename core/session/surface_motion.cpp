@@ -21,7 +21,7 @@ struct Displacements {
   Vec3 low, high;
   double largest;  // coordinate of `from`, and number in low and high
 
-  Displacements(std::span<const Vec3> from, std::span<const Vec3> to, const Mat3* turn);
+  Displacements(std::span<const Vec3> from, std::span<const Vec3> to, const Mat3& turn);
   Vec3 middle() const { return low / 2 + high / 2; }
   // Let u be the unit roundoff and L the largest number. Differences are off by u L. Where there is a turn,
   // products and sums are off by less than 9 u L more, and the length of all three by 21 u L.
@@ -53,8 +53,8 @@ struct TurnLanes {
   }
 };
 
-Displacements::Displacements(std::span<const Vec3> from, std::span<const Vec3> to, const Mat3* turn) {
-  const auto displacement = [&](std::size_t v) -> Vec3 { return to[v] - (turn ? *turn * from[v] : from[v]); };
+Displacements::Displacements(std::span<const Vec3> from, std::span<const Vec3> to, const Mat3& turn) {
+  const auto displacement = [&](std::size_t v) -> Vec3 { return to[v] - turn * from[v]; };
   low = high = displacement(0);
   Vec3 outermost = from[0].cwiseAbs();
   const auto take = [&](const Vec3& d) { low = low.cwiseMin(d), high = high.cwiseMax(d); };
@@ -74,18 +74,21 @@ Displacements::Displacements(std::span<const Vec3> from, std::span<const Vec3> t
           outer[r] = i == 0 ? far : larger(outer[r], far);
         }
     };
-    if (turn != nullptr)
-      look([lanes = TurnLanes(*turn)](const double* at, std::size_t r) { return lanes.turned(at, r); });
+    if (turn != Mat3::Identity())
+      look([lanes = TurnLanes(turn)](const double* at, std::size_t r) { return lanes.turned(at, r); });
     else
       look([](const double* at, std::size_t /*r*/) { return loaded<Lane8>(at); });
-    const auto for_each_vertex = [](const Lane8(&rows)[3], const auto& visit) {
-      double numbers[3 * kLanes];
-      for (std::size_t r = 0; r < 3; ++r) store(rows[r], numbers + kLanes * r);
-      for (std::size_t v = 0; v < kLanes; ++v)
-        visit(Vec3(numbers[3 * v], numbers[3 * v + 1], numbers[3 * v + 2]));
-    };
-    for_each_vertex(least, take), for_each_vertex(most, take);
-    for_each_vertex(outer, [&](const Vec3& far) { outermost = outermost.cwiseMax(far); });
+    double lowest[3 * kLanes], highest[3 * kLanes], farthest[3 * kLanes];
+    for (std::size_t r = 0; r < 3; ++r) {
+      store(least[r], lowest + kLanes * r);
+      store(most[r], highest + kLanes * r);
+      store(outer[r], farthest + kLanes * r);
+    }
+    for (std::size_t i = 0; i < 3 * kLanes; ++i) {
+      const auto k = static_cast<Eigen::Index>(i % 3);
+      low[k] = std::min(low[k], lowest[i]), high[k] = std::max(high[k], highest[i]);
+      outermost[k] = std::max(outermost[k], farthest[i]);
+    }
   }
   for (std::size_t v = 1 + kLanes * whole; v < from.size(); ++v) {
     take(displacement(v));
@@ -94,11 +97,14 @@ Displacements::Displacements(std::span<const Vec3> from, std::span<const Vec3> t
   largest = outermost.cwiseMax(low.cwiseAbs()).cwiseMax(high.cwiseAbs()).maxCoeff();
 }
 
-// The largest displacement, less a shift.
-double longest(std::span<const Vec3> from, std::span<const Vec3> to, const Mat3* turn, const Vec3& shift) {
+// The largest displacement of some vertices, or of all where none are named, less a shift.
+double longest(std::span<const Vec3> from, std::span<const Vec3> to, const Mat3& turn, const Vec3& shift,
+               std::span<const std::size_t> some = {}) {
   double squared = 0;
-  for (std::size_t v = 0; v < from.size(); ++v)
-    squared = std::max(squared, (to[v] - (turn ? Vec3(*turn * from[v]) : from[v]) - shift).squaredNorm());
+  for (std::size_t i = 0; i < (some.empty() ? from.size() : some.size()); ++i) {
+    const std::size_t v = some.empty() ? i : some[i];
+    squared = std::max(squared, (to[v] - turn * from[v] - shift).squaredNorm());
+  }
   return std::sqrt(squared);
 }
 
@@ -141,16 +147,13 @@ Mat3 best_turn(std::span<const Vec3> from, std::span<const Vec3> to, std::span<c
 }
 
 // How far the sample is from where a turn takes it, less one shift.
-double sampled_length(std::span<const Vec3> from, std::span<const Vec3> to, const Mat3* turn,
+double sampled_length(std::span<const Vec3> from, std::span<const Vec3> to, const Mat3& turn,
                       std::span<const std::size_t> sample) {
-  const auto displacement = [&](std::size_t v) -> Vec3 { return to[v] - (turn ? *turn * from[v] : from[v]); };
+  const auto displacement = [&](std::size_t v) -> Vec3 { return to[v] - turn * from[v]; };
   Vec3 low = displacement(sample[0]), high = low;
   for (const std::size_t v : sample)
     low = low.cwiseMin(displacement(v)), high = high.cwiseMax(displacement(v));
-  const Vec3 middle = low / 2 + high / 2;
-  double squared = 0;
-  for (const std::size_t v : sample) squared = std::max(squared, (displacement(v) - middle).squaredNorm());
-  return std::sqrt(squared);
+  return longest(from, to, turn, low / 2 + high / 2, sample);
 }
 
 }  // namespace
@@ -176,16 +179,16 @@ SurfaceMotion surface_motion(const Motion& motion, std::span<const Vec3> from,
   Mat3 turns[2]{Mat3::Identity(), Mat3::Identity()};
   double most = 0;
   for (std::size_t e = 0; e < 2; ++e) {
-    const auto bound = [&](const Mat3* turn) {
+    const auto bound = [&](const Mat3& turn) {
       if (!(sampled_length(from, ends[e], turn, sample) <= enough)) return SurfaceMotion{}.most;
       const Displacements all(from, ends[e], turn);
       const double of_box = all.bound();
       return of_box <= enough ? of_box : rounded_up(longest(from, ends[e], turn, all.middle()) + all.error());
     };
-    double least = bound(nullptr);
+    double least = bound(turns[e]);
     if (!(least <= enough)) {
       turns[e] = best_turn(from, ends[e], sample);
-      least = bound(&turns[e]);
+      least = bound(turns[e]);
     }
     if (!(least <= enough)) return {};
     most = std::max(most, least);
@@ -200,10 +203,10 @@ SurfaceMotion surface_motion(const Motion& motion, std::span<const Vec3> from,
 }
 
 double sampled_length(const Motion& motion, std::span<const std::size_t> sample, double enough) {
-  const double shifted = sampled_length(motion.start(), motion.end(), nullptr, sample);
+  const double shifted = sampled_length(motion.start(), motion.end(), Mat3::Identity(), sample);
   if (shifted <= enough) return shifted;
-  const Mat3 turn = best_turn(motion.start(), motion.end(), sample);
-  return sampled_length(motion.start(), motion.end(), &turn, sample);
+  return sampled_length(motion.start(), motion.end(), best_turn(motion.start(), motion.end(), sample),
+                        sample);
 }
 
 }  // namespace cscd
