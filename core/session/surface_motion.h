@@ -35,8 +35,8 @@ std::vector<std::size_t> sampled_vertices(std::size_t vertex_count);
 SurfaceMotion surface_motion(const Motion& motion, std::span<const Vec3> from,
                              std::span<const std::size_t> sample, double enough);
 
-// How far the sampled vertices move within a step, less one rotation and one shift. No bound for the others:
-// it spares large steps a look at all vertices.
+// How far the sampled vertices move within a step, less one shift, and less one rotation where that is more
+// than `enough`. No bound for the others: it spares large steps a look at all vertices.
 double sampled_length(const Motion& motion, std::span<const std::size_t> sample, double enough);
 
 }  // namespace cscd
