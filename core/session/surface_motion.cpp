@@ -193,8 +193,8 @@ SurfaceMotion surface_motion(const Motion& motion, std::span<const Vec3> from,
     if (!(least <= enough)) return {};
     most = std::max(most, least);
   }
-  // What the matrices lack of being rotations, and how far they differ, in Frobenius norms, which are not less
-  // than spectral norms.
+  // What the matrices lack of being rotations, and how far they differ, in Frobenius norms, which are not
+  // less than spectral norms.
   double lacks = 0;
   for (const Mat3& turn : turns) lacks = std::max(lacks, (turn.transpose() * turn - Mat3::Identity()).norm());
   const double squared = 1 - lacks - (turns[1] - turns[0]).squaredNorm() / 4;
