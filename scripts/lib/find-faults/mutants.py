@@ -50,7 +50,7 @@ from records import read_json
 from rooms import HELPER
 from script import ROOT, parser_of, refuse
 from tracked import tracked_files
-from trust import moved, reason_for, reasons_of, write_record
+from trust import reason_for, reasons_of, write_record
 
 FOLDERS = ("core", "scenes/import")
 STAGES = ("room", "fuzz", "own", "rooms", "proof", "slow")
@@ -79,7 +79,7 @@ def survivors_of(record):
         for row in table["rows"]:
             if reason_for(row, reasons):
                 continue
-            file, line, becomes, stages = moved(row)
+            file, line, becomes, stages = row
             equal = EQUAL_LINE.search(line)
             copy = int(equal[1]) - 1 if equal else 0
             line = EQUAL_LINE.sub("", line)
