@@ -32,7 +32,7 @@ constexpr std::size_t kListsOfNearAnchor = 16;
 // The work of a strategy is counted in pairs of triangles: those that it tests, one for so many overlap
 // tests, and one for so many triangles that it looks at.
 constexpr std::size_t kOverlapTests = 32, kLookedAt = 16;
-// To make a list from an anchor takes as long as the pairs of a strategy, one for so many triangles.
+// Making a list from an anchor is taken for as much work as one pair for so many triangles of the surface.
 constexpr double kOfList = 12;
 // Pairs are looked at because patches have bent until that takes this share of what an anchor takes.
 constexpr double kBent = 0.5;
@@ -108,7 +108,8 @@ void NearPairs::note_work(const CullCounts& counts) {
 }
 
 bool NearPairs::is_worth_listing(const Motion& motion) {
-  // A list lasts for so many steps as they fit into half of its reach, which have to spare what it takes.
+  // A list lasts for as many steps as fit into half of its reach. Together they have to spare at least the
+  // work of making the list.
   const double spared = kOfList * static_cast<double>(work_) / static_cast<double>(mesh_.triangle_count());
   const double longest = std::min(1.0, spared) * kOfLists * most_room_ / 2;
   if (work_ == 0 || sample_.empty() || !(longest > 0)) return false;

@@ -115,8 +115,8 @@ Vec3 mean_of(std::span<const Vec3> points, std::span<const std::size_t> sample) 
 }
 
 // The rotation that brings the sample of `from` closest to that of `to`: the quaternion of the largest
-// eigenvalue of a symmetric matrix (Horn, 1987). Squaring the matrix again and again leaves that eigenvector
-// alone, with less code than a decomposition.
+// eigenvalue of a symmetric matrix (Horn, 1987). Squaring the matrix again and again leaves nothing but that
+// eigenvector, with less code than a decomposition.
 Mat3 best_turn(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const std::size_t> sample) {
   constexpr int kSquarings = 30;
   const Vec3 before = mean_of(from, sample), after = mean_of(to, sample);
