@@ -10,7 +10,7 @@ function(cscd_wasm_package path room)
     target_compile_options(${room} PRIVATE -Oz)
     set_target_properties(${room} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)  # they are parsed at another level
   endforeach()
-  foreach(file session known_starts obstacles true_motion interval_verdict near_list near_pairs patch_motions)
+  foreach(file session candidates known_starts obstacles true_motion interval_verdict near_list near_pairs patch_motions)
     set_source_files_properties(core/session/${file}.cpp TARGET_DIRECTORY core_session PROPERTIES COMPILE_OPTIONS -Oz
       SKIP_PRECOMPILE_HEADERS ON)
   endforeach()
