@@ -31,12 +31,11 @@ struct Displacements {
 
 // A number of a turned vertex is a sum of that vertex's three numbers, which are at most two places away in
 // memory. For each of these places, what it is multiplied with: eight vertices are three times eight numbers.
-// They are set once a look, so that is compiled for size.
 struct TurnLanes {
   static constexpr std::size_t kAway = 2;
   Lane8 of[2 * kAway + 1][3];
 
-  [[gnu::cold]] explicit TurnLanes(const Mat3& turn) {
+  explicit TurnLanes(const Mat3& turn) {
     for (std::size_t place = 0; place <= 2 * kAway; ++place)
       for (std::size_t r = 0; r < 3; ++r)
         for (std::size_t l = 0; l < kLanes; ++l) {
@@ -117,9 +116,8 @@ Vec3 mean_of(std::span<const Vec3> points, std::span<const std::size_t> sample) 
 
 // The rotation that brings the sample of `from` closest to that of `to`: the quaternion of the largest
 // eigenvalue of a symmetric matrix (Horn, 1987). Squaring the matrix again and again leaves nothing but that
-// eigenvector, with less code than a decomposition. Asked once or twice a step, it is compiled for size.
-[[gnu::cold]] Mat3 best_turn(std::span<const Vec3> from, std::span<const Vec3> to,
-                             std::span<const std::size_t> sample) {
+// eigenvector, with less code than a decomposition.
+Mat3 best_turn(std::span<const Vec3> from, std::span<const Vec3> to, std::span<const std::size_t> sample) {
   constexpr int kSquarings = 30;
   const Vec3 before = mean_of(from, sample), after = mean_of(to, sample);
   Mat3 s = Mat3::Zero();

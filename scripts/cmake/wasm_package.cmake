@@ -14,6 +14,9 @@ function(cscd_wasm_package path room)
     set_source_files_properties(core/session/${file}.cpp TARGET_DIRECTORY core_session PROPERTIES COMPILE_OPTIONS -Oz
       SKIP_PRECOMPILE_HEADERS ON)
   endforeach()
+  # Looks at all vertices are in lanes already, and what else it holds runs once a look.
+  set_source_files_properties(core/session/surface_motion.cpp TARGET_DIRECTORY core_session PROPERTIES COMPILE_OPTIONS
+    "-fno-unroll-loops;-fno-vectorize;-fno-slp-vectorize" SKIP_PRECOMPILE_HEADERS ON)
   foreach(file close_integers integer_contact integer_roots integer_signs)
     set_source_files_properties(core/elementary/certified/${file}.cpp TARGET_DIRECTORY core_elementary_certified PROPERTIES
       COMPILE_OPTIONS -Oz SKIP_PRECOMPILE_HEADERS ON)
