@@ -5,10 +5,14 @@ function(cscd_wasm_package path room)
   cscd_rooms_below(rooms "^(core|library)(_|$)" ${room})
   cscd_room_objects(objects ${rooms})
   # What runs once a mesh, or decides the few pairs that no filter decides: the package is to be small.
-  foreach(room core_base core_mesh core_elementary core_elementary_exact core_detect_start core_crossing core_radial core_fast_clusters core_fast_prepare
+  foreach(room core_mesh core_elementary core_elementary_exact core_detect_start core_crossing core_radial core_fast_clusters core_fast_prepare
           library library_engine)
     target_compile_options(${room} PRIVATE -Oz)
     set_target_properties(${room} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)  # they are parsed at another level
+  endforeach()
+  foreach(file instruction_set memory thread_pool)  # not the whole room, whose precompiled header others use
+    set_source_files_properties(core/base/${file}.cpp TARGET_DIRECTORY core_base PROPERTIES COMPILE_OPTIONS -Oz
+      SKIP_PRECOMPILE_HEADERS ON)
   endforeach()
   foreach(file session known_starts obstacles true_motion interval_verdict near_list near_pairs patch_motions)
     set_source_files_properties(core/session/${file}.cpp TARGET_DIRECTORY core_session PROPERTIES COMPILE_OPTIONS -Oz
